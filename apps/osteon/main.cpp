@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <memory>
+
+#include "commands.h"
+#include "osteon/base/parallel.h"
+
+namespace {
+
+enum ExitCode { done = 0, bad_input = 2, refused = 3 };
+
+// Warnings and progress go to stderr, so that stdout stays free for what a command is asked to print.
+void send_messages_to_stderr() {
+  auto logger = std::make_shared<spdlog::logger>("osteon", std::make_shared<spdlog::sinks::stderr_sink_st>());
+  logger->set_pattern("%l: %v");
+  spdlog::set_default_logger(std::move(logger));
+}
+
+void add_common_options(CLI::App& app) {
+  app.set_version_flag("--version", "osteon " OSTEON_VERSION);
+  app.add_option_function<int>(
+         "--threads", [](const int& n) { osteon::set_threads(n); }, "Threads to use (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  app.add_flag_callback(
+      "--quiet", [] { spdlog::set_level(spdlog::level::err); }, "Only say what went wrong");
+  app.fallthrough();  // the common options may also stand behind the sub-command
+  app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {} (see --help)\n", e.what()); });
+}
+
+void add_commands(CLI::App& app) {
+  osteon::app::add_rig_command(app);
+  osteon::app::add_render_command(app);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Osteon rigs a character mesh: skeleton and skin weights", "osteon"};
+  add_common_options(app);
+  add_commands(app);
+  try {
+    app.parse(argc, argv);
+    return done;
+  } catch (const CLI::ParseError& e) {  // also --help and --version, which print and end well
+    return app.exit(e) == 0 ? done : bad_input;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  send_messages_to_stderr();
+  try {
+    return run(argc, argv);
+  } catch (const osteon::app::Refused& e) {
+    spdlog::error(e.what());
+    return refused;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("not enough memory");
+    return bad_input;
+  } catch (const std::exception& e) {
+    spdlog::error(e.what());
+    return bad_input;
+  }
+}

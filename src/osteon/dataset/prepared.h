@@ -44,8 +44,8 @@ struct PreparedCharacter {
   PerJoint<float> tolerances;           // (J) mean length of these rays: half the local diameter; what counts as found in IoU
 
   // For the skin network: per vertex the nearest bones of `bones(skeleton)` by volumetric geodesic distance, nearest first.
-  Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest_bones;  // (V,N) bone index; N = min(B, options.nearest_bones)
-  Matrix nearest_distances;                                                           // (V,N)
+  geometry::IndexMatrix nearest_bones;  // (V,N) bone index; N = min(B, options.nearest_bones)
+  Matrix nearest_distances;             // (V,N)
 
   std::size_t vertices() const { return mesh.positions.size(); }
   std::size_t joints() const { return skeleton.size(); }
@@ -60,11 +60,13 @@ void derive_inputs(PreparedCharacter& character);
 // Inputs of the skin network, (V, 3 + 8k); pre: k <= options.nearest_bones of its preparation.
 geometry::SkinInputs skin_inputs(const PreparedCharacter& character, int k = 5);
 
-// Targets of the skin network for those inputs, (V,k), not normalised: the reference weight of a bone's start joint goes to the nearest
-// bone that starts there, 0 to the others and to padding (facts 7.5). A row's sum is the share of the weight that its k bones can carry.
-Matrix skin_targets(const PreparedCharacter& character, const geometry::SkinInputs& inputs);
+// Targets of the skin network for those inputs (facts 7.5).
+geometry::SkinTargets skin_targets(const PreparedCharacter& character, const geometry::SkinInputs& inputs);
 
 // 1 where joints i < j are parent and child, in the order of geometry::pair_features: (0,1), (0,2), ..., (1,2), ... Length J(J-1)/2.
 std::vector<std::uint8_t> pair_labels(const Skeleton& skeleton);
+
+// The index of each joint's parent, -1 for the root: (J).
+std::vector<int> parent_indices(const Skeleton& skeleton);
 
 }  // namespace osteon::dataset

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "osteon/base/parallel.h"
+#include "osteon/dataset/manifest.h"
+#include "osteon/dataset/pack.h"
+#include "osteon/io/load.h"
+#include "progress_line.h"
+
+namespace osteon::app {
+namespace {
+
+struct PrepareArguments {
+  std::filesystem::path data, output;
+  std::string split = "train";
+  dataset::PrepareOptions options;
+};
+
+Rig load_rig(const std::filesystem::path& path) {
+  io::Asset asset = io::load(path);
+  if (!asset.skeleton || !asset.weights) throw Error("{}: has no skeleton with skin weights", path.string());
+  return {std::move(asset.mesh), std::move(*asset.skeleton), std::move(*asset.weights)};
+}
+
+// The character, or nothing, with a warning, where the file cannot be used: one bad file does not stop the others.
+std::optional<dataset::PreparedCharacter> try_prepare(const dataset::ManifestEntry& entry, const dataset::PrepareOptions& options) {
+  try {
+    return dataset::prepare(load_rig(entry.file), entry.info, options);
+  } catch (const Error& e) {
+    spdlog::warn("{} left out: {}", entry.info.id, e.what());
+    return std::nullopt;
+  }
+}
+
+void prepare(const PrepareArguments& arguments) {
+  const auto entries = dataset::read_manifest(arguments.data, arguments.split);
+  std::vector<std::optional<dataset::PreparedCharacter>> results(entries.size());
+  ProgressLine progress(fmt::format("preparing {}", arguments.split), entries.size());
+  parallel_for(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      results[i] = try_prepare(entries[i], arguments.options);
+      progress.advance();
+    }
+  });
+  std::vector<dataset::PreparedCharacter> characters;
+  for (auto& result : results) {
+    if (!result) continue;
+    for (const std::string& note : result->notes) spdlog::info("{}: {}", result->info.id, note);
+    characters.push_back(std::move(*result));
+  }
+  if (characters.empty())
+    throw Error("{}: none of the {} characters of split '{}' can be used", arguments.data.string(), entries.size(), arguments.split);
+  dataset::save_characters(arguments.output, characters, {{"split", arguments.split}, {"data", arguments.data.filename().string()}});
+  spdlog::info("{} of {} characters written to {}", characters.size(), entries.size(), arguments.output.string());
+}
+
+}  // namespace
+
+void add_dataset_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("dataset", "Make training data from rigged characters");
+  command->require_subcommand(1);
+  CLI::App* prepare_command = command->add_subcommand("prepare", "Turn the characters of one split into one file for osteon-train");
+  auto arguments = std::make_shared<PrepareArguments>();
+  prepare_command->add_option("--data", arguments->data, "Folder with manifest.jsonl and the characters")->required();
+  prepare_command->add_option("--split", arguments->split, "Which split of the manifest")->capture_default_str();
+  prepare_command->add_option("-o,--output", arguments->output, "The safetensors file to write")->required();
+  prepare_command->add_option("--vertices", arguments->options.working_mesh.target_vertices, "Vertices of the working mesh")
+      ->capture_default_str();
+  prepare_command->callback([arguments] { prepare(*arguments); });
+}
+
+}  // namespace osteon::app

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/dataset/manifest.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "osteon/base/error.h"
+
+namespace osteon::dataset {
+namespace {
+
+ManifestEntry parse_line(const std::string& line, const std::filesystem::path& folder) {
+  const auto json = nlohmann::json::parse(line);
+  const auto text = [&](const char* key) { return json.at(key).get<std::string>(); };
+  const std::string category = text("category");
+  return {{text("id"), text("group"), category.substr(0, category.find('/'))},
+          folder / text("file"),
+          text("split"),
+          text("licence"),
+          text("author"),
+          text("source_repo")};
+}
+
+}  // namespace
+
+std::vector<ManifestEntry> read_manifest(const std::filesystem::path& folder, const std::string& split) {
+  const std::filesystem::path path = folder / "manifest.jsonl";
+  std::ifstream file(path);
+  if (!file) throw Error("{}: cannot be opened", path.string());
+  std::vector<ManifestEntry> entries;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    if (line.empty()) continue;
+    try {
+      ManifestEntry entry = parse_line(line, folder);
+      if (split.empty() || entry.split == split) entries.push_back(std::move(entry));
+    } catch (const nlohmann::json::exception& e) {
+      throw Error("{}: line {}: {}", path.string(), number, e.what());
+    }
+  }
+  if (entries.empty()) throw Error("{}: no character has the split '{}'; expected train, val or test", path.string(), split);
+  return entries;
+}
+
+}  // namespace osteon::dataset

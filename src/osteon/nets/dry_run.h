@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cassert>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "osteon/nets/graph.h"
+#include "osteon/nets/rignet.h"
+
+namespace osteon::nets {
+
+// A backend that computes nothing: it notes which parameters a network has, and their shapes. Loading weights is a dry run and then a
+// comparison with the file.
+class DryRun {
+ public:
+  struct Tensor {
+    int width = 0;
+  };
+  struct Index {};
+
+  std::map<std::string, std::vector<std::int64_t>> parameters;  // name -> shape
+
+  Tensor tensor(std::span<const float>, int, int columns) { return {columns}; }
+  Index index(std::span<const std::int32_t>) { return {}; }
+  Tensor linear(const Path& path, const Tensor& x, int width) {
+    note(path / "weight", {width, x.width});
+    note(path / "bias", {width});
+    return {width};
+  }
+  Tensor batch_norm(const Path& path, const Tensor& x) {
+    for (const char* name : {"weight", "bias", "running_mean", "running_var"}) note(path / name, {x.width});
+    return x;
+  }
+  Tensor relu(const Tensor& x) { return x; }
+  Tensor subtract(const Tensor& x, [[maybe_unused]] const Tensor& y) {
+    assert(x.width == y.width);
+    return x;
+  }
+  Tensor concat(std::initializer_list<Tensor> all) {
+    Tensor sum;
+    for (const Tensor& x : all) sum.width += x.width;
+    return sum;
+  }
+  Tensor rows(const Tensor& x, const Index&) { return x; }
+  Tensor max_by(const Tensor& x, const Index&) { return x; }
+
+ private:
+  void note(const Path& path, std::vector<std::int64_t> shape) {
+    [[maybe_unused]] const bool is_new = parameters.emplace(path.name(), std::move(shape)).second;
+    assert(is_new && "two layers have one name");
+  }
+};
+
+namespace rignet {
+
+// The five networks, as they are called in files and commands.
+enum class Network { joints, attention, bones, root, skin };
+
+inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network network) {
+  DryRun b;
+  const MeshGraph<DryRun> mesh{{3}, {}, {}, {}};
+  const JointSet<DryRun> joints{{3}, {1}, {}, {}};
+  switch (network) {
+    case Network::joints:
+      joint_net(b, mesh);
+      break;
+    case Network::attention:
+      mask_net(b, mesh);
+      break;
+    case Network::bones:
+      bone_net(b, mesh, joints, {{}, {}, {8}, {}});
+      break;
+    case Network::root:
+      root_net(b, mesh, joints);
+      break;
+    case Network::skin:
+      skin_net(b, mesh, {skin_inputs});
+      break;
+  }
+  return std::move(b.parameters);
+}
+
+}  // namespace rignet
+}  // namespace osteon::nets

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cassert>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "osteon/nets/layers.h"
+
+// The inputs of the graph networks: several meshes (or skeletons) laid one after the other, first as arrays, then on a backend.
+namespace osteon::nets {
+
+struct EdgeArrays {
+  std::vector<std::int32_t> offsets{0}, sources, receivers;  // see Edges
+
+  // The edges of the next mesh, whose first vertex is `first`: neighbours of its v-th vertex are members[offsets[v] .. offsets[v+1]-1],
+  // itself not among them (a self loop is added), numbered from 0 within the mesh.
+  void add(std::span<const std::uint32_t> mesh_offsets, std::span<const std::uint32_t> members, std::int32_t first) {
+    for (std::size_t v = 0; v + 1 < mesh_offsets.size(); ++v) {
+      const auto receiver = first + static_cast<std::int32_t>(v);
+      sources.push_back(receiver);
+      for (std::uint32_t k = mesh_offsets[v]; k < mesh_offsets[v + 1]; ++k)
+        sources.push_back(first + static_cast<std::int32_t>(members[k]));
+      receivers.resize(sources.size(), receiver);
+      offsets.push_back(static_cast<std::int32_t>(sources.size()));
+    }
+  }
+
+  // From each of `count` rows to each of them, itself included.
+  void add_complete(std::int32_t count, std::int32_t first) {
+    for (std::int32_t v = 0; v < count; ++v) {
+      for (std::int32_t u = 0; u < count; ++u) sources.push_back(first + u);
+      receivers.resize(sources.size(), first + v);
+      offsets.push_back(static_cast<std::int32_t>(sources.size()));
+    }
+  }
+};
+
+// Which rows belong to which mesh of the batch.
+struct BatchArrays {
+  std::vector<std::int32_t> offsets{0};  // (M+1)
+  std::vector<std::int32_t> mesh_of;     // (N)
+
+  std::int32_t rows() const { return offsets.back(); }
+  void add(std::size_t count) {
+    assert(count > 0);
+    mesh_of.resize(mesh_of.size() + count, static_cast<std::int32_t>(offsets.size()) - 1);
+    offsets.push_back(static_cast<std::int32_t>(mesh_of.size()));
+  }
+};
+
+struct MeshArrays {
+  std::vector<float> positions;  // (V,3) normalised: longest side 1, feet on y = 0, centred on x and z
+  EdgeArrays ring, geodesic;     // one-ring; up to 10 or 15 vertices within geodesic distance 0.06
+  BatchArrays batch;
+};
+
+struct JointArrays {
+  std::vector<float> positions;       // (J,3) in the frame of the mesh
+  std::vector<float> plane_distance;  // (J) distance (>= 0) to the mesh's plane of symmetry, or to x = 0 where there is none
+  EdgeArrays pairs;                   // all of the same mesh: add_complete
+  BatchArrays batch;
+};
+
+// Pairs of joints of the same mesh, in the order (first, second) that the features describe.
+struct PairArrays {
+  std::vector<std::int32_t> first, second;  // (P) rows of the joints
+  std::vector<float> features;              // (P,8) first's position, second's position, distance, share of it inside the shape
+  std::vector<std::int32_t> mesh_of;        // (P)
+};
+
+template <class B>
+struct Batch {
+  typename B::Index offsets;  // (M+1)
+  typename B::Index mesh_of;  // (N)
+};
+
+template <class B>
+struct MeshGraph {
+  typename B::Tensor positions;  // (V,3)
+  Edges<B> ring, geodesic;
+  Batch<B> batch;
+};
+
+template <class B>
+struct JointSet {
+  typename B::Tensor positions;       // (J,3)
+  typename B::Tensor plane_distance;  // (J,1)
+  Edges<B> pairs;
+  Batch<B> batch;
+};
+
+template <class B>
+struct JointPairs {
+  typename B::Index first, second;
+  typename B::Tensor features;  // (P,8)
+  typename B::Index mesh_of;
+};
+
+template <Ops B>
+Edges<B> on_backend(B& b, const EdgeArrays& edges) {
+  return {b.index(edges.offsets), b.index(edges.sources), b.index(edges.receivers)};
+}
+
+template <Ops B>
+Batch<B> on_backend(B& b, const BatchArrays& batch) {
+  return {b.index(batch.offsets), b.index(batch.mesh_of)};
+}
+
+template <Ops B>
+MeshGraph<B> on_backend(B& b, const MeshArrays& mesh) {
+  return {b.tensor(mesh.positions, mesh.batch.rows(), 3), on_backend(b, mesh.ring), on_backend(b, mesh.geodesic),
+          on_backend(b, mesh.batch)};
+}
+
+template <Ops B>
+JointSet<B> on_backend(B& b, const JointArrays& joints) {
+  const int count = joints.batch.rows();
+  return {b.tensor(joints.positions, count, 3), b.tensor(joints.plane_distance, count, 1), on_backend(b, joints.pairs),
+          on_backend(b, joints.batch)};
+}
+
+template <Ops B>
+JointPairs<B> on_backend(B& b, const PairArrays& pairs) {
+  return {b.index(pairs.first), b.index(pairs.second), b.tensor(pairs.features, static_cast<int>(pairs.first.size()), 8),
+          b.index(pairs.mesh_of)};
+}
+
+}  // namespace osteon::nets

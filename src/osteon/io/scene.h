@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteon/io/load.h"
+
+namespace osteon::io {
+
+// What an importer hands over: tolerant (any unit, axes, number of roots, weights that do not sum to one), but with every index in range
+// and the node tree free of cycles. assemble() makes the strict Asset of it.
+struct Scene {
+  struct Node {
+    std::string name;  // may be empty or not unique
+    std::optional<std::size_t> parent;
+    Eigen::Affine3d world = Eigen::Affine3d::Identity();  // node -> file's world, not yet scaled to metres or turned y up
+  };
+  struct Influence {
+    std::uint32_t joint;  // index into Skin::joints
+    float weight;
+  };
+  struct Mesh {
+    std::vector<Vec3f> positions;
+    std::vector<Triangle> faces;
+    std::vector<std::uint32_t> influence_offsets;  // size positions + 1, or empty when nothing is skinned
+    std::vector<Influence> influences;
+  };
+  struct Skin {
+    std::vector<std::size_t> joints;  // nodes
+    std::vector<Eigen::Affine3d> inverse_binds;
+  };
+  struct Instance {  // a mesh placed in the scene
+    std::size_t node;
+    std::size_t mesh;
+    std::optional<std::size_t> skin;  // then the node's transform does not apply to the mesh
+  };
+
+  std::vector<Node> nodes;
+  std::vector<Mesh> meshes;
+  std::vector<Skin> skins;
+  std::vector<Instance> instances;
+  UpAxis up = UpAxis::y;  // what the file says, overruled by LoadOptions
+  double metres_per_unit = 1.0;
+};
+
+// Larger coordinates than this are taken for garbage like NaN is: their squares overflow a float.
+constexpr float kLargestCoordinate = 1e15f;
+
+}  // namespace osteon::io

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/joint_extraction.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "osteon/pipelines/mean_shift.h"
+
+namespace osteon::pipelines {
+namespace {
+
+// What takes part in the mean shift, in the mirror frame.
+struct Votes {
+  std::vector<Vec3f> positions;
+  std::vector<float> weights;
+  bool inside_used = true;
+};
+
+// Less than this share of the attention inside the volume says that there is no volume.
+constexpr double kMinInside = 0.05;
+
+Votes plausible_votes(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const MirrorFrame& frame, float min_attention) {
+  const auto votes = [&](bool only_inside) {
+    Votes out;
+    out.inside_used = only_inside;
+    for (std::size_t i = 0; i < candidates.positions.size(); ++i) {
+      const Vec3f& q = candidates.positions[i];
+      if (!(candidates.attention[i] > min_attention) || !q.allFinite() || (only_inside && !voxels.inside(q))) continue;
+      out.positions.push_back(frame.to(q));
+      out.weights.push_back(candidates.attention[i]);
+    }
+    return out;
+  };
+  const auto sum = [](const Votes& v) { return std::accumulate(v.weights.begin(), v.weights.end(), 0.0); };
+  Votes inside = votes(true);
+  Votes all = votes(false);
+  return sum(inside) < kMinInside * sum(all) ? all : inside;
+}
+
+// Candidate indices by falling density; ties keep the order of the candidates, which is that of the canonical mesh.
+std::vector<std::uint32_t> by_density(const std::vector<float>& density) {
+  std::vector<std::uint32_t> order(density.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return density[a] > density[b]; });
+  return order;
+}
+
+struct Mode {
+  Vec3f position;  // x == 0 for a mode on the plane; for a pair the one of the two that a candidate made
+  bool is_pair;    // it and its mirror image
+  float share;     // density as a share of all attention
+};
+
+// Visits the candidates by falling density; each that is left becomes a mode and removes what is within h of it and of its image.
+std::vector<Mode> modes_of(const std::vector<Vec3f>& shifted, const std::vector<float>& share, Mirror mirror, float h) {
+  std::vector<bool> suppressed(shifted.size(), false);
+  std::vector<Mode> modes;
+  for (std::uint32_t i : by_density(share)) {
+    if (suppressed[i]) continue;
+    Mode mode{shifted[i], mirror == Mirror::across_x, share[i]};
+    if (mode.is_pair && std::abs(mode.position.x()) <= 0.5f * h) {
+      mode.position.x() = 0.0f;
+      mode.is_pair = false;
+    }
+    modes.push_back(mode);
+    suppressed[i] = true;
+    for (std::size_t j = 0; j < shifted.size(); ++j)
+      if ((shifted[j] - mode.position).norm() <= h || (mode.is_pair && (shifted[j] - mirrored(mode.position)).norm() <= h))
+        suppressed[j] = true;
+  }
+  return modes;
+}
+
+// Modes come by falling share: drops the thin tail, but keeps two.
+void prune(std::vector<Mode>& modes, float min_share) {
+  const auto joints_of = [](const Mode& m) { return m.is_pair ? 2 : 1; };
+  std::size_t kept = 0;
+  int joints = 0;
+  while (kept < modes.size() && (modes[kept].share >= min_share || joints < 2)) joints += joints_of(modes[kept++]);
+  modes.resize(kept);
+}
+
+// Attention of the candidates (without their images) that gather around a place.
+struct Support {
+  double attention = 0.0, squares = 0.0;
+
+  float mean() const { return attention > 0.0 ? static_cast<float>(squares / attention) : 0.0f; }  // weighted by attention
+};
+
+Support support_at(const Vec3f& place, const std::vector<Vec3f>& shifted, const std::vector<float>& weights, float h) {
+  Support s;
+  for (std::size_t i = 0; i < shifted.size(); ++i) {
+    if ((shifted[i] - place).norm() > h) continue;
+    s.attention += static_cast<double>(weights[i]);
+    s.squares += static_cast<double>(weights[i]) * static_cast<double>(weights[i]);
+  }
+  return s;
+}
+
+void add(JointSet& joints, const Vec3f& position, const Support& support, std::optional<std::size_t> partner) {
+  joints.positions.push_back(position);
+  joints.confidence.push_back(support.mean());
+  joints.partner.push_back(partner);
+}
+
+void add_mode(JointSet& joints, const Mode& mode, const std::vector<Vec3f>& shifted, const std::vector<float>& weights, Mirror mirror,
+              const JointExtractionOptions& options) {
+  const Support here = support_at(mode.position, shifted, weights, options.bandwidth);
+  const std::size_t next = joints.size();
+  if (!mode.is_pair) return add(joints, mode.position, here, mirror == Mirror::off ? std::nullopt : std::optional(next));
+  const Support there = support_at(mirrored(mode.position), shifted, weights, options.bandwidth);
+  const double needed = static_cast<double>(options.one_sided_share) * std::max(here.attention, there.attention);
+  if (there.attention < needed) return add(joints, mode.position, here, std::nullopt);
+  if (here.attention < needed) return add(joints, mirrored(mode.position), there, std::nullopt);
+  const Support both{here.attention + there.attention, here.squares + there.squares};
+  const Vec3f left(std::abs(mode.position.x()), mode.position.y(), mode.position.z());
+  add(joints, left, both, next + 1);
+  add(joints, mirrored(left), both, next);
+}
+
+float explained_share(const JointSet& joints, const std::vector<Vec3f>& shifted, const std::vector<float>& weights, float h) {
+  double near = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < shifted.size(); ++i) {
+    all += static_cast<double>(weights[i]);
+    if (std::ranges::any_of(joints.positions, [&](const Vec3f& p) { return (shifted[i] - p).norm() <= h; }))
+      near += static_cast<double>(weights[i]);
+  }
+  return all > 0.0 ? static_cast<float>(near / all) : 0.0f;
+}
+
+std::vector<float> density_shares(const std::vector<Vec3f>& shifted, const std::vector<float>& weights, Mirror mirror, float h) {
+  std::vector<float> density = kernel_density(shifted, weights, mirror, h);
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0) * (mirror == Mirror::across_x ? 2.0 : 1.0);
+  for (float& d : density) d = static_cast<float>(static_cast<double>(d) / all);
+  return density;
+}
+
+JointExtraction extract_from(const Votes& votes, const MirrorFrame& frame, Mirror mirror, const JointExtractionOptions& options) {
+  JointExtraction out;
+  out.joints.frame = frame;
+  out.bandwidth = options.bandwidth;
+  out.inside_used = votes.inside_used;
+  const float h = options.bandwidth;
+  const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step}).points;
+  std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
+  prune(modes, options.min_share);
+  for (const Mode& mode : modes) add_mode(out.joints, mode, shifted, votes.weights, mirror, options);
+  out.explained = explained_share(out.joints, shifted, votes.weights, h);
+  return out;
+}
+
+float geometric(float from, float to, float t) { return from * std::pow(to / from, t); }
+
+}  // namespace
+
+float bandwidth_of_detail(float detail) {
+  assert(detail >= 0.0f && detail <= 1.0f);
+  return detail < 0.5f ? geometric(kCoarsestBandwidth, kLearnedBandwidth, 2.0f * detail)
+                       : geometric(kLearnedBandwidth, kFinestBandwidth, 2.0f * detail - 1.0f);
+}
+
+JointExtraction extract_joints(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const std::optional<Plane>& symmetry,
+                               const JointExtractionOptions& options) {
+  assert(candidates.positions.size() == candidates.attention.size());
+  const MirrorFrame frame = symmetry ? MirrorFrame::of(*symmetry) : MirrorFrame{};
+  const Votes votes = plausible_votes(candidates, voxels, frame, options.min_attention);
+  return extract_from(votes, frame, symmetry ? Mirror::across_x : Mirror::off, options);
+}
+
+JointExtraction extract_joint_count(const JointCandidates& candidates, const geometry::VoxelGrid& voxels,
+                                    const std::optional<Plane>& symmetry, std::size_t count, const JointExtractionOptions& options) {
+  const MirrorFrame frame = symmetry ? MirrorFrame::of(*symmetry) : MirrorFrame{};
+  const Votes votes = plausible_votes(candidates, voxels, frame, options.min_attention);
+  const auto at = [&](float detail) {
+    JointExtractionOptions tried = options;
+    tried.bandwidth = bandwidth_of_detail(detail);
+    return extract_from(votes, frame, symmetry ? Mirror::across_x : Mirror::off, tried);
+  };
+  const auto miss = [&](const JointExtraction& e) { return std::max(e.joints.size(), count) - std::min(e.joints.size(), count); };
+  // The number of joints grows with the detail, though not strictly: halve the interval, and keep the best that was seen.
+  JointExtraction best = at(0.5f);
+  const bool finer = best.joints.size() < count;
+  float low = finer ? 0.5f : 0.0f, high = finer ? 1.0f : 0.5f;
+  for (int step = 0; step < 10 && miss(best) > 0; ++step) {
+    const float middle = 0.5f * (low + high);
+    JointExtraction tried = at(middle);
+    (tried.joints.size() < count ? low : high) = middle;
+    if (miss(tried) < miss(best)) best = std::move(tried);
+  }
+  return best;
+}
+
+}  // namespace osteon::pipelines

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "osteon/geometry/voxel_grid.h"
+#include "osteon/pipelines/joint_set.h"
+
+namespace osteon::pipelines {
+
+// The level of detail of the paper: the bandwidth may be anything in this range; in the middle is the one that training found.
+constexpr float kFinestBandwidth = 0.01f, kLearnedBandwidth = 0.0429f, kCoarsestBandwidth = 0.1f;
+
+// Detail 0 is the coarsest bandwidth, 0.5 the learned one, 1 the finest, geometric in between. Pre: 0 <= detail <= 1.
+float bandwidth_of_detail(float detail);
+
+// Where the networks see joints: every vertex of the working mesh, displaced, with its attention.
+struct JointCandidates {
+  std::vector<Vec3f> positions;  // (V) normalised frame
+  std::vector<float> attention;  // (V) 0..1
+};
+
+struct JointExtractionOptions {
+  float bandwidth = kLearnedBandwidth;
+  float step = 0.3f;             // of the mean shift
+  float min_attention = 1e-3f;   // candidates below are ignored
+  float min_share = 2e-3f;       // a joint gathers at least this share of all attention within its bandwidth
+  float one_sided_share = 0.1f;  // of a mirror pair, a side that gathers less than this share of the other side's attention is dropped
+};
+
+struct JointExtraction {
+  JointSet joints;
+  float bandwidth = 0.0f;   // as used
+  float explained = 0.0f;   // share of the attention that lies within one bandwidth of a joint after the mean shift, 0..1
+  bool inside_used = true;  // false: hardly any candidate is inside the volume (an open sheet), so that test was left out
+};
+
+// Candidates -> joints (RigNet, sec. 4.1; facts 5.6): those inside the volume with attention, mirrored by `symmetry`; mean shift; a density
+// that counts attention; pruning of thin modes; non-maximum suppression within one bandwidth. Where we differ from the authors' code:
+// - Density is a share of all attention, so the threshold does not depend on the number of vertices (theirs does).
+// - Both sides vote for a mirror pair; theirs throws the predictions of one side away. A pair whose one side has no support becomes one
+//   joint (a sword in one hand). Joints within half a bandwidth of the plane are put on it (theirs: 0.02).
+// - When fewer than two modes pass the threshold, the two densest are taken.
+// Empty when no candidate is left. The order of the joints is that of falling density.
+JointExtraction extract_joints(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const std::optional<Plane>& symmetry,
+                               const JointExtractionOptions& options = {});
+
+// The same with the bandwidth in the whole range whose number of joints is nearest to `count` (ties: nearest to the learned bandwidth).
+JointExtraction extract_joint_count(const JointCandidates& candidates, const geometry::VoxelGrid& voxels,
+                                    const std::optional<Plane>& symmetry, std::size_t count, const JointExtractionOptions& options = {});
+
+}  // namespace osteon::pipelines

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/mean_shift.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "osteon/base/parallel.h"
+#include "osteon/pipelines/point_grid.h"
+
+namespace osteon::pipelines {
+namespace {
+
+constexpr std::size_t kCellsPerTask = 4;
+
+// The kernel sums at one place.
+struct Sums {
+  float weight = 0.0f;           // sum k
+  Vec3f moment = Vec3f::Zero();  // sum k (x_i - x_j): relative, so that far from the origin nothing is lost
+};
+
+Sums sums_at(const Vec3f& p, const PointGrid& grid, const std::vector<PointGrid::Run>& runs, float h2) {
+  float k_sum = 0.0f, x = 0.0f, y = 0.0f, z = 0.0f;
+  for (const auto& [begin, end] : runs)
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const Vec3f d = grid.position(i) - p;
+      const float k = grid.weight(i) * std::max(0.0f, h2 - d.squaredNorm());
+      k_sum += k;
+      x += k * d.x();
+      y += k * d.y();
+      z += k * d.z();
+    }
+  return {k_sum, {x, y, z}};
+}
+
+std::vector<Vec3f> with_images(std::span<const Vec3f> points, Mirror mirror) {
+  std::vector<Vec3f> all(points.begin(), points.end());
+  if (mirror == Mirror::across_x)
+    for (const Vec3f& p : points) all.emplace_back(-p.x(), p.y(), p.z());
+  return all;
+}
+
+std::vector<float> doubled(std::span<const float> weights, Mirror mirror) {
+  std::vector<float> all(weights.begin(), weights.end());
+  if (mirror == Mirror::across_x) all.insert(all.end(), weights.begin(), weights.end());
+  return all;
+}
+
+// Calls visit(i, sums at point i) for every point that is not an image; each point in exactly one task.
+template <class Visit>
+void for_each_sum(std::span<const Vec3f> points, std::span<const float> weights, Mirror mirror, float bandwidth, const Visit& visit) {
+  const PointGrid grid(with_images(points, mirror), doubled(weights, mirror), bandwidth);
+  parallel_for(grid.cells(), kCellsPerTask, [&](std::size_t first, std::size_t last) {
+    for (std::size_t cell = first; cell < last; ++cell) {
+      const auto runs = grid.around(cell);
+      const auto [begin, end] = grid.points_of(cell);
+      for (std::uint32_t place = begin; place < end; ++place)
+        if (const std::uint32_t i = grid.original(place); i < points.size())
+          visit(i, sums_at(grid.position(place), grid, runs, bandwidth * bandwidth));
+    }
+  });
+}
+
+// Moves every point once; returns the longest move.
+float shift(std::vector<Vec3f>& points, std::span<const float> weights, Mirror mirror, const MeanShiftOptions& options) {
+  std::vector<Vec3f> moves(points.size(), Vec3f::Zero());
+  for_each_sum(points, weights, mirror, options.bandwidth, [&](std::size_t i, const Sums& s) {
+    if (s.weight > 0.0f) moves[i] = options.step * s.moment / s.weight;
+  });
+  float longest = 0.0f;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] += moves[i];
+    longest = std::max(longest, moves[i].norm());
+  }
+  return longest;
+}
+
+}  // namespace
+
+MeanShiftResult mean_shift(std::span<const Vec3f> points, std::span<const float> weights, Mirror mirror, const MeanShiftOptions& options) {
+  assert(points.size() == weights.size() && options.bandwidth > 0.0f);
+  MeanShiftResult result;
+  result.points.assign(points.begin(), points.end());
+  while (!result.converged && result.iterations < options.most_iterations) {
+    result.converged = shift(result.points, weights, mirror, options) <= options.tolerance;
+    ++result.iterations;
+  }
+  return result;
+}
+
+std::vector<float> kernel_density(std::span<const Vec3f> points, std::span<const float> weights, Mirror mirror, float bandwidth) {
+  std::vector<float> density(points.size(), 0.0f);
+  const float scale = 1.0f / (bandwidth * bandwidth);
+  for_each_sum(points, weights, mirror, bandwidth, [&](std::size_t i, const Sums& s) { density[i] = scale * s.weight; });
+  return density;
+}
+
+}  // namespace osteon::pipelines

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/tensor/loops.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace osteon::tensor::loops {
+namespace {
+
+// out(r, c) = value(r, c)
+template <class Value>
+Tensor filled(std::size_t rows, std::size_t columns, Value&& value) {
+  Tensor out(rows, columns);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t c = 0; c < columns; ++c) out.row(r)[c] = value(r, c);
+  return out;
+}
+
+}  // namespace
+
+Tensor linear(const Tensor& x, const Matrix& weights, std::span<const float> bias) {
+  assert(static_cast<std::size_t>(weights.cols()) == x.columns() && static_cast<std::size_t>(weights.rows()) == bias.size());
+  return filled(x.rows(), bias.size(), [&](std::size_t r, std::size_t c) {
+    double sum = bias[c];  // so that the reference's own rounding does not count
+    for (std::size_t i = 0; i < x.columns(); ++i)
+      sum += static_cast<double>(x.row(r)[i]) * weights(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i));
+    return static_cast<float>(sum);
+  });
+}
+
+Tensor scale_shift(const Tensor& x, std::span<const float> scale, std::span<const float> shift) {
+  assert(scale.size() == x.columns() && shift.size() == x.columns());
+  return filled(x.rows(), x.columns(), [&](std::size_t r, std::size_t c) { return scale[c] * x.row(r)[c] + shift[c]; });
+}
+
+Tensor relu(const Tensor& x) {
+  return filled(x.rows(), x.columns(), [&](std::size_t r, std::size_t c) { return std::max(0.0f, x.row(r)[c]); });
+}
+
+Tensor subtract(const Tensor& x, const Tensor& y) {
+  assert(x.rows() == y.rows() && x.columns() == y.columns());
+  return filled(x.rows(), x.columns(), [&](std::size_t r, std::size_t c) { return x.row(r)[c] - y.row(r)[c]; });
+}
+
+Tensor concat(std::span<const Tensor> parts) {
+  std::size_t columns = 0;
+  for (const Tensor& part : parts) columns += part.columns();
+  Tensor out(parts.front().rows(), columns);
+  std::size_t first = 0;
+  for (const Tensor& part : parts) {
+    assert(part.rows() == out.rows());
+    for (std::size_t r = 0; r < out.rows(); ++r) std::ranges::copy(part.row(r), out.row(r).begin() + static_cast<std::ptrdiff_t>(first));
+    first += part.columns();
+  }
+  return out;
+}
+
+Tensor rows(const Tensor& x, std::span<const std::int32_t> picked) {
+  return filled(picked.size(), x.columns(), [&](std::size_t r, std::size_t c) { return x.row(static_cast<std::size_t>(picked[r]))[c]; });
+}
+
+Tensor max_by(const Tensor& x, std::span<const std::int32_t> offsets) {
+  return filled(offsets.size() - 1, x.columns(), [&](std::size_t s, std::size_t c) {
+    assert(offsets[s] < offsets[s + 1]);
+    float best = x.row(static_cast<std::size_t>(offsets[s]))[c];
+    for (std::int32_t r = offsets[s] + 1; r < offsets[s + 1]; ++r) best = std::max(best, x.row(static_cast<std::size_t>(r))[c]);
+    return best;
+  });
+}
+
+}  // namespace osteon::tensor::loops

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/tensor/row_loops.h"
+
+#define OSTEON_EVERY_CPU __attribute__((target_clones("avx512f", "avx2", "default")))
+
+namespace osteon::tensor {
+
+OSTEON_EVERY_CPU void gather_add_relu(const float* at_receiver, const float* at_source, std::size_t stride,
+                                      std::span<const std::int32_t> receivers, std::span<const std::int32_t> sources, std::size_t width,
+                                      float* out) {
+  for (std::size_t m = 0; m < receivers.size(); ++m) {
+    const float* __restrict p = at_receiver + static_cast<std::size_t>(receivers[m]) * stride;
+    const float* __restrict q = at_source + static_cast<std::size_t>(sources[m]) * stride;
+    float* __restrict o = out + m * width;
+    for (std::size_t c = 0; c < width; ++c) {
+      const float sum = p[c] + q[c];
+      o[c] = sum > 0 ? sum : 0;
+    }
+  }
+}
+
+OSTEON_EVERY_CPU void max_into(const float* messages, std::span<const std::int32_t> receivers, std::int32_t first, std::size_t width,
+                               float* best) {
+  for (std::size_t m = 0; m < receivers.size(); ++m) {
+    const float* __restrict z = messages + m * width;
+    float* __restrict b = best + static_cast<std::size_t>(receivers[m] - first) * width;
+    for (std::size_t c = 0; c < width; ++c) b[c] = z[c] > b[c] ? z[c] : b[c];
+  }
+}
+
+OSTEON_EVERY_CPU void max_of_rows(const float* x, std::size_t rows, std::size_t width, float* __restrict best) {
+  for (std::size_t c = 0; c < width; ++c) best[c] = x[c];
+  for (std::size_t r = 1; r < rows; ++r) {
+    const float* __restrict row = x + r * width;
+    for (std::size_t c = 0; c < width; ++c) best[c] = row[c] > best[c] ? row[c] : best[c];
+  }
+}
+
+OSTEON_EVERY_CPU void sign_shift_relu(float* x, std::size_t rows, std::size_t width, const float* __restrict sign,
+                                      const float* __restrict shift) {
+  for (std::size_t r = 0; r < rows; ++r) {
+    float* __restrict row = x + r * width;
+    for (std::size_t c = 0; c < width; ++c) {
+      const float value = sign[c] * row[c] + shift[c];
+      row[c] = value > 0 ? value : 0;
+    }
+  }
+}
+
+OSTEON_EVERY_CPU void scale_shift(float* x, std::size_t rows, std::size_t width, const float* __restrict scale,
+                                  const float* __restrict shift) {
+  for (std::size_t r = 0; r < rows; ++r) {
+    float* __restrict row = x + r * width;
+    for (std::size_t c = 0; c < width; ++c) row[c] = scale[c] * row[c] + shift[c];
+  }
+}
+
+OSTEON_EVERY_CPU void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Rectify rectify) {
+  const float least = rectify == Rectify::yes ? 0.0f : -__builtin_inff();
+  for (std::size_t r = 0; r < which.size(); ++r) {
+    float* __restrict row = x + r * width;
+    const float* __restrict more = addend + static_cast<std::size_t>(which[r]) * width;
+    for (std::size_t c = 0; c < width; ++c) {
+      const float value = row[c] + more[c];
+      row[c] = value > least ? value : least;
+    }
+  }
+}
+
+OSTEON_EVERY_CPU void relu(const float* __restrict x, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = x[i] > 0 ? x[i] : 0;
+}
+
+}  // namespace osteon::tensor

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+// The loops of the fast path that are not matrix products, compiled for several instruction sets and chosen at start-up.
+namespace osteon::tensor {
+
+// out[m] = max(0, at_receiver[receivers[m]] + at_source[sources[m]]), rows of `width` floats that lie `stride` floats apart.
+void gather_add_relu(const float* at_receiver, const float* at_source, std::size_t stride, std::span<const std::int32_t> receivers,
+                     std::span<const std::int32_t> sources, std::size_t width, float* out);
+
+// best[receivers[m] - first] = max(itself, messages[m]), for dense rows of `width` floats. Pre: every receiver >= first.
+void max_into(const float* messages, std::span<const std::int32_t> receivers, std::int32_t first, std::size_t width, float* best);
+
+// best = the largest of each column of dense rows. Pre: rows > 0.
+void max_of_rows(const float* x, std::size_t rows, std::size_t width, float* best);
+
+// x = max(0, sign * x + shift), column by column, for dense rows.
+void sign_shift_relu(float* x, std::size_t rows, std::size_t width, const float* sign, const float* shift);
+
+// x = scale * x + shift, column by column, for dense rows.
+void scale_shift(float* x, std::size_t rows, std::size_t width, const float* scale, const float* shift);
+
+enum class Rectify { no, yes };
+// x[r] += addend[which[r]], then max(0, ·) if asked; dense rows.
+void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Rectify rectify);
+
+// out = max(0, x), `count` floats.
+void relu(const float* x, std::size_t count, float* out);
+
+}  // namespace osteon::tensor

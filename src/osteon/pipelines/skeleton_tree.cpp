@@ -30,7 +30,8 @@ class Costs {
       : joints_(joints), evidence_(evidence), options_(options) {}
 
   float probability(std::size_t i, std::size_t j) const {
-    return std::clamp(mirror_mean(joints_, evidence_.bone_probability, i, j), kLeastProbability, 1.0f - kLeastProbability);
+    const float p = mirror_mean(joints_, evidence_.bone_probability, i, j);
+    return p > kLeastProbability ? std::min(p, 1.0f - kLeastProbability) : kLeastProbability;  // not a number: unlikely
   }
   float operator()(std::size_t i, std::size_t j) const {
     const float outside = std::max(0.0f, mirror_mean(joints_, evidence_.outside, i, j) - 1.0f);

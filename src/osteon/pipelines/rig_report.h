@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteon/mesh/triangle_mesh.h"
+#include "osteon/rig/skeleton.h"
+
+namespace osteon::pipelines {
+
+struct StageTime {
+  std::string stage;
+  double seconds;
+};
+
+// How far a rig can be trusted, and how it came about. Lengths: longest side of the character = 1.
+struct RigReport {
+  std::size_t vertices = 0, working_vertices = 0, joints = 0;
+  // 0..1: geometric mean of the parts below that apply; 0 where nothing sensible was found. Not a probability.
+  float confidence = 0.0f;
+  std::optional<float> joint_confidence;  // mean over the joints of the attention of the vertices that point there; none: skeleton given
+  std::optional<float> explained;         // share of all attention that points at a joint; none: skeleton given
+  std::optional<float> bone_confidence;   // geometric mean of the probabilities of the chosen bones; none: skeleton given
+  float coverage = 0.0f;                  // share of the vertices with a bone within 0.2 by way of the body
+  std::optional<float> symmetry_error;    // mean distance from each joint's mirror image to the nearest joint; none: no symmetry plane
+  std::optional<float> bandwidth;         // of the mean shift, as used; none: skeleton given
+  std::vector<StageTime> stages;          // in the order in which they ran
+  std::vector<std::string> warnings;      // what the user should look at
+  std::vector<std::string> repairs;       // what was wrong with the mesh and was mended in the working copy (never in the asset)
+};
+
+// Mean distance from the mirror image of each point to the nearest point. Pre: there are points.
+float mirror_error(const std::vector<Vec3f>& points, const Plane& plane);
+
+// Share of the rows with an entry <= reach, 0..1.
+float covered_share(const Matrix& distances, float reach);
+
+}  // namespace osteon::pipelines

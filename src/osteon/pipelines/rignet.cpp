@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/rignet.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+
+#include "osteon/base/error.h"
+#include "osteon/geometry/neighbourhoods.h"
+#include "osteon/geometry/rignet_features.h"
+#include "osteon/geometry/symmetry.h"
+#include "osteon/geometry/volumetric_geodesic.h"
+#include "osteon/geometry/voxel_grid.h"
+#include "osteon/geometry/working_mesh.h"
+#include "osteon/skin/distance_weights.h"
+
+namespace osteon::pipelines {
+namespace {
+
+constexpr std::size_t kGeodesicNeighbours = 15;  // the paper's number
+constexpr float kReach = 0.2f;                   // a vertex farther than this from all bones is not covered
+
+// Runs the stages one after the other: tells the progress, and notes how long each took.
+class Stages {
+ public:
+  Stages(RigReport& report, const Progress& progress) : report_(report), progress_(progress) {}
+
+  template <class Work>
+  auto run(std::string_view name, const Work& work) {
+    constexpr double kStages = 11.0;
+    if (progress_) progress_(name, static_cast<double>(report_.stages.size()) / kStages);
+    const auto start = std::chrono::steady_clock::now();
+    auto result = work();
+    report_.stages.push_back({std::string(name), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+    return result;
+  }
+
+ private:
+  RigReport& report_;
+  const Progress& progress_;
+};
+
+// What the stages know of the character, in the frame of the networks.
+struct Body {
+  geometry::WorkingMesh working;
+  geometry::Neighbourhoods ring;
+  nets::MeshArrays graph;
+  geometry::VoxelGrid voxels;
+  std::optional<Plane> symmetry;
+
+  const std::vector<Vec3f>& positions() const { return working.mesh.positions.raw(); }
+};
+
+void check(const RignetOptions& options) {
+  if (options.bandwidth && !(*options.bandwidth >= kFinestBandwidth && *options.bandwidth <= kCoarsestBandwidth))
+    throw Error("bandwidth: {} found, expected {} to {}", *options.bandwidth, kFinestBandwidth, kCoarsestBandwidth);
+  if (!(options.detail >= 0.0f && options.detail <= 1.0f)) throw Error("detail: {} found, expected 0 to 1", options.detail);
+  if (options.joints && *options.joints < 1) throw Error("joints: 0 found, expected at least 1");
+  if (options.skin.max_influences < 1) throw Error("max influences: 0 found, expected at least 1");
+  if (options.skeleton) validate(*options.skeleton);
+}
+
+Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stages) {
+  Body body;
+  body.working = stages.run("working mesh", [&] { return geometry::make_working_mesh(mesh, options.working_mesh); });
+  const TriangleMesh& working = body.working.mesh;
+  body.ring = geometry::one_ring(working);
+  const auto geodesic =
+      stages.run("neighbourhoods", [&] { return geometry::evenly(geometry::geodesic_balls(working), kGeodesicNeighbours); });
+  body.graph = infer::single_mesh(body.positions(), {body.ring.offsets, body.ring.members}, {geodesic.offsets, geodesic.members});
+  body.voxels = stages.run("voxels", [&] { return geometry::voxelize(working); });
+  if (options.symmetry == Symmetry::automatic) body.symmetry = stages.run("symmetry", [&] { return geometry::symmetry_plane(working); });
+  return body;
+}
+
+JointCandidates candidates(const Body& body, const infer::RignetModels& models) {
+  const Matrix attention = models.attention(body.graph), displacement = models.displacement(body.graph);
+  JointCandidates out;
+  for (Eigen::Index v = 0; v < attention.rows(); ++v) {
+    out.positions.push_back(body.positions()[static_cast<std::size_t>(v)] + displacement.row(v).transpose());
+    out.attention.push_back(attention(v, 0));
+  }
+  return out;
+}
+
+JointExtraction find_joints(const JointCandidates& seen, const Body& body, const RignetOptions& options) {
+  if (options.joints) return extract_joint_count(seen, body.voxels, body.symmetry, *options.joints, options.extraction);
+  JointExtractionOptions extraction = options.extraction;
+  extraction.bandwidth = options.bandwidth.value_or(bandwidth_of_detail(options.detail));
+  return extract_joints(seen, body.voxels, body.symmetry, extraction);
+}
+
+Matrix symmetric(const Matrix& of_pairs, std::size_t joints) {
+  const auto n = static_cast<Eigen::Index>(joints);
+  Matrix out = Matrix::Zero(n, n);
+  Eigen::Index pair = 0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = i + 1; j < n; ++j) out(i, j) = out(j, i) = of_pairs(pair++, 0);
+  return out;
+}
+
+TreeEvidence evidence(const JointSet& joints, const Body& body, const infer::RignetModels& models) {
+  const std::vector<Vec3f> positions = joints.normalised();
+  const Plane plane = body.symmetry.value_or(Plane{Vec3f::UnitX(), 0.0f});
+  std::vector<float> plane_distances;
+  for (const Vec3f& p : positions) plane_distances.push_back(std::abs(plane.signed_distance(p)));
+  const nets::JointArrays arrays = infer::single_skeleton(positions, plane_distances);
+  const Matrix root = models.root_probabilities(body.graph, arrays);
+  const Matrix pairs =
+      positions.size() > 1 ? models.bone_probabilities(body.graph, arrays, geometry::pair_features(positions, body.voxels)) : Matrix(0, 1);
+  return {symmetric(pairs, positions.size()), {root.data(), root.data() + root.size()}, samples_outside(positions, body.voxels)};
+}
+
+// A valid rig for a character in which no joints were seen.
+Skeleton single_joint(const Body& body) {
+  const auto& positions = body.positions();
+  const Vec3f mean = std::accumulate(positions.begin(), positions.end(), Vec3f(Vec3f::Zero())) / static_cast<float>(positions.size());
+  Skeleton skeleton;
+  skeleton.add("root", std::nullopt, body.working.normalization.undo(mean));
+  return skeleton;
+}
+
+void warn_about_joints(const JointExtraction& found, const RignetOptions& options, std::vector<std::string>& warnings) {
+  if (found.joints.size() == 0) warnings.push_back("no joints were found: the rig is a single joint in the middle");
+  if (!found.inside_used) warnings.push_back("the mesh encloses hardly any volume: joints may lie outside of it");
+  if (options.joints && found.joints.size() != *options.joints)
+    warnings.push_back(fmt::format("{} joints were asked for; the nearest that was found is {}", *options.joints, found.joints.size()));
+}
+
+Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RigReport& report,
+                          Stages& stages) {
+  const JointCandidates seen = stages.run("joint networks", [&] { return candidates(body, models); });
+  const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, body, options); });
+  warn_about_joints(found, options, report.warnings);
+  report.bandwidth = found.bandwidth;
+  report.explained = found.explained;
+  report.joint_confidence = report.bone_confidence = 0.0f;
+  if (found.joints.size() == 0) return single_joint(body);
+  const TreeEvidence known = stages.run("connectivity networks", [&] { return evidence(found.joints, body, models); });
+  const JointTree tree = stages.run("tree", [&] { return connect(found.joints, known, options.tree); });
+  const auto& confidence = found.joints.confidence;
+  report.joint_confidence = std::accumulate(confidence.begin(), confidence.end(), 0.0f) / static_cast<float>(confidence.size());
+  report.bone_confidence = tree.likelihood;
+  return make_skeleton(found.joints, tree, body.working.normalization).skeleton;
+}
+
+// The skeleton's bones in the frame of the networks.
+std::vector<Bone> normalised_bones(const Skeleton& skeleton, const geometry::Normalization& normalization) {
+  std::vector<Bone> list = bones(skeleton);
+  for (Bone& b : list) b.segment = {normalization.apply(b.segment.a), normalization.apply(b.segment.b)};
+  return list;
+}
+
+Matrix distances_to(const std::vector<Bone>& bones, const Body& body) {
+  std::vector<Segment> segments;
+  for (const Bone& b : bones) segments.push_back(b.segment);
+  return geometry::volumetric_geodesic_distance(body.working.mesh, body.voxels, segments);
+}
+
+Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const Matrix& distances, const Body& body,
+                       const infer::RignetModels& models, std::vector<std::string>& warnings) {
+  if (joints == 1) return Matrix::Ones(distances.rows(), 1);
+  std::vector<Segment> segments;
+  std::vector<std::uint8_t> leaf;
+  for (const Bone& b : bones) {
+    segments.push_back(b.segment);
+    leaf.push_back(b.end ? 0 : 1);
+  }
+  const geometry::SkinInputs inputs = geometry::skin_inputs(body.positions(), segments, leaf, distances);
+  const Matrix weights = models.skin_weights(body.graph, inputs.features, inputs.nearest);
+  if (weights.allFinite()) return joint_weights(weights, inputs.nearest, bones, joints);
+  warnings.push_back("the skin network gave no numbers: weights fall off with the distance to the bones instead");
+  return skin::distance_weights(distances, bones, joints);
+}
+
+void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances, RigReport& report) {
+  report.joints = skeleton.size();
+  report.coverage = covered_share(distances, kReach);
+  if (report.coverage < 0.9f)
+    report.warnings.push_back(fmt::format("{:.0f} % of the character have no bone nearby", 100.0f * (1.0f - report.coverage)));
+  if (body.symmetry) {
+    std::vector<Vec3f> points;
+    for (const Vec3f& p : skeleton.rest_positions) points.push_back(body.working.normalization.apply(p));
+    report.symmetry_error = mirror_error(points, *body.symmetry);
+  }
+  double product = static_cast<double>(report.coverage), parts = 1.0;
+  for (const auto& part : {report.joint_confidence, report.explained, report.bone_confidence})
+    if (part) {
+      product *= static_cast<double>(*part);
+      parts += 1.0;
+    }
+  report.confidence = static_cast<float>(std::pow(product, 1.0 / parts));
+}
+
+}  // namespace
+
+RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options,
+                           const Progress& progress) {
+  check(options);
+  RignetResult result;
+  RigReport& report = result.report;
+  Stages stages(report, progress);
+  const Body body = study(mesh, options, stages);
+  report.vertices = mesh.positions.size();
+  report.working_vertices = body.positions().size();
+  report.repairs = body.working.clean.repairs;
+  result.skeleton = options.skeleton ? *options.skeleton : predict_skeleton(body, models, options, report, stages);
+  const std::vector<Bone> list = normalised_bones(result.skeleton, body.working.normalization);
+  const Matrix distances = stages.run("bone distances", [&] { return distances_to(list, body); });
+  const Matrix raw =
+      stages.run("skin network", [&] { return predict_weights(list, result.skeleton.size(), distances, body, models, report.warnings); });
+  result.weights = stages.run("weights", [&] { return finish_weights(raw, body.working, body.ring, options.skin); });
+  assess(body, result.skeleton, distances, report);
+  return result;
+}
+
+}  // namespace osteon::pipelines

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "osteon/base/progress.h"
+#include "osteon/infer/rignet.h"
+#include "osteon/pipelines/joint_extraction.h"
+#include "osteon/pipelines/rig_report.h"
+#include "osteon/pipelines/skeleton_tree.h"
+#include "osteon/pipelines/skin_prediction.h"
+#include "osteon/rig/skeleton.h"
+#include "osteon/rig/skin_weights.h"
+
+namespace osteon::pipelines {
+
+enum class Symmetry { automatic, off };
+
+struct RignetOptions {
+  std::optional<float> bandwidth;     // of the mean shift, kFinestBandwidth..kCoarsestBandwidth; else by `detail`
+  float detail = 0.5f;                // 0 (few joints) .. 1 (many)
+  std::optional<std::size_t> joints;  // about this many: the bandwidth is searched, and the two above are not read
+  Symmetry symmetry = Symmetry::automatic;
+  std::optional<Skeleton> skeleton;  // use this one, in the mesh's world coordinates, and only skin it
+  geometry::WorkingMeshOptions working_mesh;
+  JointExtractionOptions extraction;  // its bandwidth is not read
+  TreeOptions tree;
+  SkinPredictionOptions skin;  // with the number of influences
+};
+
+struct RignetResult {
+  Skeleton skeleton;    // world space of the mesh; the given one, unchanged, where one was given
+  SkinWeights weights;  // one row per vertex of the mesh that was given, in its order
+  RigReport report;
+};
+
+// Below this confidence a rig should not be used unseen.
+constexpr float kLowConfidence = 0.15f;
+
+// The whole of RigNet: Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
+// mesh -> clean working mesh -> displacement and attention -> joints -> tree -> skin -> weights on the mesh that was given.
+// The rig is always valid: where the networks find no joints it is a single one in the middle, with confidence 0 and a warning.
+// The same for any order of vertices and faces (weights follow their vertices) and any number of threads.
+// Throws Error for a mesh without surface, options out of range or an invalid skeleton; Cancelled if `progress` does.
+// Pre: validate(mesh) holds.
+RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options = {},
+                           const Progress& progress = {});
+
+}  // namespace osteon::pipelines

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/skin_prediction.h"
+
+#include <cassert>
+
+#include "osteon/skin/weight_cleanup.h"
+
+namespace osteon::pipelines {
+
+Matrix joint_weights(const Matrix& bone_weights, const geometry::IndexMatrix& nearest, std::span<const Bone> bones, std::size_t joints) {
+  assert(bone_weights.rows() == nearest.rows() && bone_weights.cols() == nearest.cols());
+  Matrix out = Matrix::Zero(bone_weights.rows(), static_cast<Eigen::Index>(joints));
+  for (Eigen::Index v = 0; v < nearest.rows(); ++v)
+    for (Eigen::Index k = 0; k < nearest.cols(); ++k)
+      if (const int b = nearest(v, k); b >= 0)
+        out(v, static_cast<Eigen::Index>(index(bones[static_cast<std::size_t>(b)].start))) += bone_weights(v, k);
+  return out;
+}
+
+SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& working, const geometry::Neighbourhoods& one_ring,
+                           const SkinPredictionOptions& options) {
+  const auto columns = static_cast<std::size_t>(raw.cols());
+  Matrix weights = raw;
+  skin::prune_rows(weights, 0.0f, columns);  // rows sum to 1 and are finite from here on
+  weights = skin::smooth_rows(weights, one_ring);
+  skin::prune_rows(weights, options.prune_share, options.max_influences);
+  skin::fill_empty_rows(weights, working.mesh.positions, one_ring);
+  if (!(weights.maxCoeff() > 0.0f)) weights.col(0).setOnes();
+  return skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
+}
+
+}  // namespace osteon::pipelines

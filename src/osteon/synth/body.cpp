@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/synth/body.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace osteon::synth {
+namespace {
+
+constexpr float kFalloff = 0.5f;  // width of a joint's weight, in radii of its cone: the blend reaches one radius along the bone
+
+Vec3f mirror(const Vec3f& p) { return {-p.x(), p.y(), p.z()}; }
+
+// min(a, b) rounded off where they differ by less than `width`. The quadratic form of Quilez, "Smooth minimum", iquilezles.org.
+float smooth_min(float a, float b, float width) {
+  const float overlap = std::max(width - std::abs(a - b), 0.0f);
+  return std::min(a, b) - overlap * overlap / (4.0f * width);
+}
+
+// Stretches space along the flat direction so that the flattened cone becomes round.
+Vec3f unflattened(const RoundCone& cone, const Vec3f& p) {
+  return p + cone.flat_direction * (cone.flat_direction.dot(p) * (1.0f / cone.flatness - 1.0f));
+}
+
+float round_distance(const Vec3f& p, const Vec3f& a, const Vec3f& b, float ra, float rb) {
+  const Vec3f ab = b - a, ap = p - a;
+  const float length = ab.norm();
+  if (length <= std::abs(ra - rb)) return ra > rb ? ap.norm() - ra : (p - b).norm() - rb;  // one ball holds the other
+  const float slope = (ra - rb) / length, lean = std::sqrt(1.0f - slope * slope);
+  const float along = ap.dot(ab) / length;
+  const float across = std::sqrt(std::max(ap.squaredNorm() - along * along, 0.0f));
+  const float k = along - across * slope / lean;  // foot of the perpendicular to the slanted side
+  if (k <= 0.0f) return ap.norm() - ra;
+  if (k >= length) return (p - b).norm() - rb;
+  return across * lean + along * slope - ra;
+}
+
+}  // namespace
+
+float signed_distance(const RoundCone& cone, const Vec3f& p) {
+  assert(cone.flatness > 0.0f && cone.flatness <= 1.0f);
+  const Vec3f a = unflattened(cone, cone.axis.a), b = unflattened(cone, cone.axis.b);
+  return cone.flatness * round_distance(unflattened(cone, p), a, b, cone.radius_a, cone.radius_b);
+}
+
+JointId Body::joint(const std::string& name, std::optional<JointId> parent, const Vec3f& position) {
+  assert(position.x() == 0.0f);
+  const JointId added = skeleton_.add(name, parent, position);
+  twins_.push_back(added);
+  widths_.push_back(0.0f);
+  return added;
+}
+
+JointId Body::pair(const std::string& name, JointId parent, const Vec3f& position) {
+  assert(position.x() > 0.0f);
+  const JointId left = skeleton_.add("Left" + name, parent, position);
+  const JointId right = skeleton_.add("Right" + name, twins_[parent], mirror(position));
+  twins_.push_back(right);
+  twins_.push_back(left);
+  widths_.resize(skeleton_.size());
+  return left;
+}
+
+void Body::clothe(JointId joint, const RoundCone& cone, float blend) {
+  assert(blend > 0.0f);
+  parts_.push_back({joint, cone, blend});
+  const float width = kFalloff * 0.5f * (cone.radius_a + cone.radius_b) * cone.flatness;
+  widths_[joint] = widths_[twins_[joint]] = std::max(widths_[joint], width);
+}
+
+float Body::distance(const Vec3f& p) const {
+  const Vec3f near_side(std::abs(p.x()), p.y(), p.z()), far_side = mirror(near_side);
+  float d = std::numeric_limits<float>::max();
+  for (const Part& part : parts_) {
+    d = smooth_min(d, signed_distance(part.cone, near_side), part.blend);
+    if (twins_[part.joint] != part.joint) d = smooth_min(d, signed_distance(part.cone, far_side), part.blend);
+  }
+  return d;
+}
+
+Eigen::AlignedBox3f Body::box() const {
+  Eigen::AlignedBox3f box;
+  for (const Part& part : parts_) {
+    const Vec3f reach = Vec3f::Constant(std::max(part.cone.radius_a, part.cone.radius_b) + part.blend);
+    for (const Vec3f& end : {part.cone.axis.a, part.cone.axis.b})
+      for (const Vec3f& p : {end, mirror(end)}) box.extend(Eigen::AlignedBox3f(p - reach, p + reach));
+  }
+  return box;
+}
+
+PerJoint<float> Body::joint_distances(const Vec3f& p) const {
+  PerJoint<float> distances(skeleton_.size(), std::numeric_limits<float>::infinity());
+  for (const Part& part : parts_) {
+    float& left = distances[part.joint];
+    left = std::min(left, signed_distance(part.cone, p));
+    if (twins_[part.joint] == part.joint) continue;
+    float& right = distances[twins_[part.joint]];
+    right = std::min(right, signed_distance(part.cone, mirror(p)));
+  }
+  return distances;
+}
+
+std::vector<Influence> Body::weights(const Vec3f& p) const {
+  const PerJoint<float> distances = joint_distances(p);
+  const auto nearest = static_cast<JointId>(std::min_element(distances.begin(), distances.end()) - distances.begin());
+  std::vector<Influence> row;
+  for (JointId j : skeleton_.names.ids()) {
+    const bool related = j == nearest || skeleton_.parents[j] == nearest || skeleton_.parents[nearest] == j;
+    const float width = std::max(widths_[j], widths_[nearest]);
+    if (!related || !(width > 0.0f)) continue;
+    const float share = std::max(1.0f - (distances[j] - distances[nearest]) / width, 0.0f);
+    if (share > 0.0f) row.push_back({j, share * share});
+  }
+  return row;
+}
+
+}  // namespace osteon::synth

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteon/base/types.h"
+#include "osteon/rig/skeleton.h"
+#include "osteon/rig/skin_weights.h"
+
+namespace osteon::synth {
+
+// A cone with round ends: the hull of two balls, optionally flattened across its axis.
+struct RoundCone {
+  Segment axis;
+  float radius_a, radius_b;
+  Vec3f flat_direction = Vec3f::UnitX();  // unit; the section is `flatness` times as thick along it
+  float flatness = 1.0f;                  // 0 < flatness <= 1
+};
+
+// Signed distance, negative inside: exact where flatness is 1, else its zero set is exact and the value is not above the true distance.
+// The 2D construction of Quilez, "Distance functions", iquilezles.org, section "Round Cone".
+float signed_distance(const RoundCone& cone, const Vec3f& p);
+
+enum class Side { Centre, Left, Right };
+
+// A character as a skeleton clothed with round cones that melt into one another, mirror-symmetric about x = 0: what stands on the left side
+// (x > 0) is given once and stands on the right too. World space, metres, y up, facing +z.
+class Body {
+ public:
+  // A joint on the middle plane. The first joint is the root and has no parent.
+  JointId joint(const std::string& name, std::optional<JointId> parent, const Vec3f& position);
+  // A joint on the left and its twin on the right, named "Left" + name and "Right" + name; returns the left one.
+  // `parent` is a joint of the middle or the left.
+  JointId pair(const std::string& name, JointId parent, const Vec3f& position);
+  // Clothes a joint (middle or left). `blend` is the width, in metres, over which the cone melts into those added before it.
+  void clothe(JointId joint, const RoundCone& cone, float blend);
+
+  const Skeleton& skeleton() const { return skeleton_; }
+  JointId mirrored(JointId joint) const { return twins_[joint]; }
+  const Vec3f& at(JointId joint) const { return skeleton_.rest_positions[joint]; }
+
+  // Negative inside; never above the distance to the surface in value, so that empty space can be skipped. f(x,y,z) = f(-x,y,z).
+  float distance(const Vec3f& p) const;
+  Eigen::AlignedBox3f box() const;  // holds the whole surface
+
+  // Exact smooth weights of a point on the surface: the joint whose cone is nearest, shared with its parent and children where theirs are
+  // about as near. A joint's share falls off as (1 - (d - nearest) / width)^2: half and half at the joint between two bones, nothing beyond
+  // about one radius from it. Left and right never share: nothing leaks between legs or fingers.
+  std::vector<Influence> weights(const Vec3f& p) const;
+
+ private:
+  struct Part {
+    JointId joint;
+    RoundCone cone;
+    float blend;
+  };
+  PerJoint<float> joint_distances(const Vec3f& p) const;
+
+  Skeleton skeleton_;
+  PerJoint<JointId> twins_;
+  std::vector<Part> parts_;  // of the middle and the left
+  PerJoint<float> widths_;   // over which a joint's weight falls off, metres
+};
+
+}  // namespace osteon::synth

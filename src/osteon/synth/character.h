@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "osteon/rig/rig.h"
+
+namespace osteon::synth {
+
+enum class Kind { Biped, Quadruped, Bird, Fish, ManyLegged };
+constexpr std::array<Kind, 5> kKinds{Kind::Biped, Kind::Quadruped, Kind::Bird, Kind::Fish, Kind::ManyLegged};
+std::string_view name(Kind kind);     // "biped", "quadruped", "bird", "fish", "many-legged"
+Kind kind_of(std::string_view name);  // throws Error that lists the names
+
+struct CharacterOptions {
+  int cells = 256;  // of the polygonisation along the longest side; vertices grow with its square (256: about 40 thousand)
+};
+
+// A character of random proportions with its exact rig: closed skin in one piece, standing on y = 0, facing +z, mirror-symmetric, joints
+// where the body bends, each +y along its bone, and weights that follow from the construction. The same seed gives the same character.
+Rig make_character(Kind kind, std::uint64_t seed, const CharacterOptions& options = {});
+
+}  // namespace osteon::synth

@@ -67,8 +67,4 @@ OSTEON_EVERY_CPU void add_gathered(float* x, std::size_t width, const float* add
   }
 }
 
-OSTEON_EVERY_CPU void relu(const float* __restrict x, std::size_t count, float* __restrict out) {
-  for (std::size_t i = 0; i < count; ++i) out[i] = x[i] > 0 ? x[i] : 0;
-}
-
 }  // namespace osteon::tensor

@@ -28,7 +28,4 @@ enum class Rectify { no, yes };
 // x[r] += addend[which[r]], then max(0, ·) if asked; dense rows.
 void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Rectify rectify);
 
-// out = max(0, x), `count` floats.
-void relu(const float* x, std::size_t count, float* out);
-
 }  // namespace osteon::tensor

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/infer/networks.h"
+
+#include <cassert>
+
+#include "osteon/infer/loops_backend.h"
+#include "osteon/infer/onednn_backend.h"
+#include "osteon/nets/rignet.h"
+
+namespace osteon::infer {
+namespace {
+
+namespace rignet = nets::rignet;
+using nets::on_backend;
+using rignet::Network;
+
+template <class Backend>
+typename Backend::Tensor output(Network network, Backend& b, const NetworkInput& input) {
+  const auto mesh = on_backend(b, input.mesh);
+  switch (network) {
+    case Network::joints:
+      return rignet::joint_net(b, mesh);
+    case Network::attention:
+      return rignet::mask_net(b, mesh);
+    case Network::bones:
+      return rignet::bone_net(b, mesh, on_backend(b, *input.joints), on_backend(b, *input.pairs));
+    case Network::root:
+      return rignet::root_net(b, mesh, on_backend(b, *input.joints));
+    case Network::skin:
+      return rignet::skin_net(b, mesh, b.tensor(input.skin_features, input.mesh.batch.rows(), rignet::skin_inputs));
+  }
+  assert(false && "no such network");
+  return {};
+}
+
+}  // namespace
+
+template <class Backend>
+Matrix run(Network network, Backend& backend, const NetworkInput& input) {
+  return backend.matrix(output(network, backend, input));
+}
+
+template Matrix run(Network, Loops&, const NetworkInput&);
+template Matrix run(Network, Onednn&, const NetworkInput&);
+
+}  // namespace osteon::infer

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/infer/rignet.h"
+
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "osteon/base/error.h"
+#include "osteon/base/parallel.h"
+#include "osteon/infer/model_folder.h"
+#include "osteon/infer/networks.h"
+#include "osteon/infer/onednn_backend.h"
+#include "osteon/nets/rignet.h"
+
+namespace osteon::infer {
+
+struct RignetModels::Networks {
+  std::array<std::unique_ptr<Onednn>, 5> by_network;
+
+  Onednn& operator[](nets::rignet::Network network) const { return *by_network[static_cast<std::size_t>(network)]; }
+};
+
+namespace {
+
+namespace fs = std::filesystem;
+using nets::rignet::Network;
+
+constexpr std::array<std::pair<Network, const char*>, 5> files{{{Network::joints, "joints.safetensors"},
+                                                                {Network::attention, "attention.safetensors"},
+                                                                {Network::bones, "bones.safetensors"},
+                                                                {Network::root, "root.safetensors"},
+                                                                {Network::skin, "skin.safetensors"}}};
+
+void require_files(const fs::path& folder) {
+  std::vector<std::string> missing;
+  for (const auto& [network, name] : files)
+    if (!fs::is_regular_file(folder / name)) missing.push_back((folder / name).string());
+  if (!missing.empty()) throw Error("RigNet needs five files of weights; missing:\n  {}", fmt::join(missing, "\n  "));
+}
+
+// Runs the network on a single vertex, so that its weights are packed before the first mesh comes.
+void pack_weights(Network network, Onednn& backend) {
+  const Vec3f origin = Vec3f::Zero();
+  const float on_the_plane = 0;
+  const std::uint32_t no_neighbours[] = {0, 0};
+  const nets::MeshArrays mesh = single_mesh({&origin, 1}, {no_neighbours, {}}, {no_neighbours, {}});
+  const nets::JointArrays joints = single_skeleton({&origin, 1}, {&on_the_plane, 1});
+  const nets::PairArrays pairs{{0}, {0}, std::vector<float>(8), {0}};
+  const std::vector<float> features(nets::rignet::skin_inputs);
+  run(network, backend, {mesh, &joints, &pairs, features});
+}
+
+void add_edges(nets::EdgeArrays& edges, NeighbourView neighbours) { edges.add(neighbours.offsets, neighbours.members, 0); }
+
+std::vector<float> coordinates(std::span<const Vec3f> points) {
+  std::vector<float> out;
+  out.reserve(3 * points.size());
+  for (const Vec3f& p : points) out.insert(out.end(), p.begin(), p.end());
+  return out;
+}
+
+// Every pair of the skeleton's joints as (i, j), i < j, and then as (j, i).
+nets::PairArrays pairs_in_both_orders(std::int32_t joints, const Matrix& features) {
+  nets::PairArrays out;
+  for (std::int32_t i = 0; i < joints; ++i) {
+    for (std::int32_t j = i + 1; j < joints; ++j) {
+      out.first.push_back(i);
+      out.second.push_back(j);
+    }
+  }
+  const std::vector<std::int32_t> smaller = out.first;
+  out.first.insert(out.first.end(), out.second.begin(), out.second.end());
+  out.second.insert(out.second.end(), smaller.begin(), smaller.end());
+  out.mesh_of.assign(out.first.size(), 0);
+
+  Matrix both(2 * features.rows(), features.cols());
+  Matrix reversed = features;
+  reversed.leftCols(3) = features.middleCols(3, 3);
+  reversed.middleCols(3, 3) = features.leftCols(3);
+  both << features, reversed;
+  out.features.assign(both.data(), both.data() + both.size());
+  return out;
+}
+
+Matrix sigmoid(const Matrix& logits) { return (1.0f / (1.0f + (-logits.array()).exp())).matrix(); }
+
+// softmax over the bones that there are
+Matrix masked_softmax(const Matrix& logits, const RignetModels::NearestBones& nearest) {
+  Matrix out = Matrix::Zero(logits.rows(), logits.cols());
+  for (Eigen::Index v = 0; v < logits.rows(); ++v) {
+    float largest = -std::numeric_limits<float>::infinity(), sum = 0;
+    for (Eigen::Index k = 0; k < logits.cols(); ++k)
+      if (nearest(v, k) >= 0) largest = std::max(largest, logits(v, k));
+    for (Eigen::Index k = 0; k < logits.cols(); ++k)
+      if (nearest(v, k) >= 0) sum += out(v, k) = std::exp(logits(v, k) - largest);
+    assert(sum > 0 && "a vertex without a bone");
+    out.row(v) /= sum;
+  }
+  return out;
+}
+
+}  // namespace
+
+nets::MeshArrays single_mesh(std::span<const Vec3f> positions, NeighbourView ring, NeighbourView geodesic) {
+  assert(ring.offsets.size() == positions.size() + 1 && geodesic.offsets.size() == positions.size() + 1);
+  nets::MeshArrays out;
+  out.positions = coordinates(positions);
+  add_edges(out.ring, ring);
+  add_edges(out.geodesic, geodesic);
+  out.batch.add(positions.size());
+  return out;
+}
+
+nets::JointArrays single_skeleton(std::span<const Vec3f> joints, std::span<const float> plane_distances) {
+  assert(joints.size() == plane_distances.size());
+  nets::JointArrays out;
+  out.positions = coordinates(joints);
+  out.plane_distance.assign(plane_distances.begin(), plane_distances.end());
+  out.pairs.add_complete(static_cast<std::int32_t>(joints.size()), 0);
+  out.batch.add(joints.size());
+  return out;
+}
+
+RignetModels RignetModels::load() { return load(find_models("rignet")); }
+
+RignetModels RignetModels::load(const fs::path& folder) {
+  require_files(folder);
+  auto networks = std::make_unique<Networks>();
+  parallel_for(files.size(), 1, [&](std::size_t i, std::size_t) {
+    const auto& [network, name] = files[i];
+    auto backend = std::make_unique<Onednn>(load_parameters(folder / name, nets::rignet::parameter_shapes(network)));
+    pack_weights(network, *backend);
+    networks->by_network[static_cast<std::size_t>(network)] = std::move(backend);
+  });
+  return RignetModels(std::move(networks));
+}
+
+RignetModels::RignetModels(std::unique_ptr<Networks> networks) : networks_(std::move(networks)) {}
+RignetModels::~RignetModels() = default;
+RignetModels::RignetModels(RignetModels&&) noexcept = default;
+RignetModels& RignetModels::operator=(RignetModels&&) noexcept = default;
+
+Matrix RignetModels::displacement(const nets::MeshArrays& mesh) const {
+  return run(Network::joints, (*networks_)[Network::joints], {mesh});
+}
+
+Matrix RignetModels::attention(const nets::MeshArrays& mesh) const {
+  return sigmoid(run(Network::attention, (*networks_)[Network::attention], {mesh}));
+}
+
+Matrix RignetModels::bone_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints, const Matrix& pair_features) const {
+  const std::int32_t count = joints.batch.rows();
+  const Eigen::Index pair_count = Eigen::Index{count} * (count - 1) / 2;
+  assert(pair_features.rows() == pair_count);
+  if (pair_count == 0) return Matrix(0, 1);
+  const nets::PairArrays pairs = pairs_in_both_orders(count, pair_features);
+  const Matrix both = sigmoid(run(Network::bones, (*networks_)[Network::bones], {mesh, &joints, &pairs}));
+  return 0.5f * (both.topRows(pair_count) + both.bottomRows(pair_count));
+}
+
+Matrix RignetModels::root_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints) const {
+  const Matrix logits = run(Network::root, (*networks_)[Network::root], {mesh, &joints});
+  const Matrix shares = (logits.array() - logits.maxCoeff()).exp().matrix();
+  return shares / shares.sum();
+}
+
+Matrix RignetModels::skin_weights(const nets::MeshArrays& mesh, const Matrix& features, const NearestBones& nearest) const {
+  assert(nearest.rows() == features.rows() && nearest.cols() == nets::rignet::skin_bones);
+  const std::span<const float> numbers(features.data(), static_cast<std::size_t>(features.size()));
+  return masked_softmax(run(Network::skin, (*networks_)[Network::skin], {mesh, nullptr, nullptr, numbers}), nearest);
+}
+
+}  // namespace osteon::infer

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "osteon/base/types.h"
+#include "osteon/nets/graph.h"
+
+namespace osteon::infer {
+
+// For each vertex the vertices that it hears, itself not among them: of v, members[offsets[v] .. offsets[v+1]-1].
+struct NeighbourView {
+  std::span<const std::uint32_t> offsets, members;
+};
+
+// One mesh as the networks read it. Positions normalised: longest side 1, feet on y = 0, centred on x and z.
+// ring: one-ring; geodesic: up to 10 or 15 vertices spread over the ball of geodesic radius 0.06.
+nets::MeshArrays single_mesh(std::span<const Vec3f> positions, NeighbourView ring, NeighbourView geodesic);
+
+// One skeleton's joints in the frame of the mesh, and each one's distance (>= 0) to the plane of symmetry (or to x = 0 where none is).
+nets::JointArrays single_skeleton(std::span<const Vec3f> joints, std::span<const float> plane_distances);
+
+// The five trained networks of RigNet (nets/rignet.h), ready to run. Their outputs are the same for any number of threads; renumbering the
+// vertices renumbers them and nothing else. May be used by several threads at the same time.
+class RignetModels {
+ public:
+  // From {attention,joints,bones,root,skin}.safetensors, float32 or float16. Throws one Error that names each missing file, or each
+  // parameter of a file that does not fit.
+  static RignetModels load(const std::filesystem::path& folder);
+  static RignetModels load();  // from where find_models("rignet") says
+
+  ~RignetModels();
+  RignetModels(RignetModels&&) noexcept;
+  RignetModels& operator=(RignetModels&&) noexcept;
+
+  Matrix displacement(const nets::MeshArrays& mesh) const;  // (V,3) from each vertex towards a joint near it
+  Matrix attention(const nets::MeshArrays& mesh) const;     // (V,1) in 0..1: how well the vertex can tell where a joint is
+
+  // (P,1) how likely a bone joins the two joints of each pair (i, j), i < j, in the order (0,1), (0,2), ..., (1,2), ... : the mean over
+  // both orders of the two. pair_features: (P,8) first joint, second joint, their distance, share of the way that is inside the shape.
+  Matrix bone_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints, const Matrix& pair_features) const;
+
+  Matrix root_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints) const;  // (J,1), sum 1
+
+  // (V,5) how much each vertex follows each bone of its row in `nearest` (V,5; -1: no bone, gets 0); rows sum to 1.
+  // features: (V,43) of geometry/rignet_features.h.
+  using NearestBones = Eigen::Ref<const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+  Matrix skin_weights(const nets::MeshArrays& mesh, const Matrix& features, const NearestBones& nearest) const;
+
+ private:
+  struct Networks;
+  explicit RignetModels(std::unique_ptr<Networks> networks);
+  std::unique_ptr<Networks> networks_;
+};
+
+}  // namespace osteon::infer

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/infer/networks.h"
+
+#include "examples.h"
+#include "osteon/infer/loops_backend.h"
+#include "osteon/infer/onednn_backend.h"
+#include "support/expect.h"
+
+namespace osteon::infer {
+namespace {
+
+using test::all_networks;
+using test::ExampleInput;
+using test::Network;
+using test::random_parameters;
+using test::ScopedThreads;
+
+class Networks : public testing::TestWithParam<Network> {};
+
+std::string name_of(const testing::TestParamInfo<Network>& network) {
+  constexpr const char* names[] = {"joints", "attention", "bones", "root", "skin"};
+  return names[static_cast<std::size_t>(network.param)];
+}
+INSTANTIATE_TEST_SUITE_P(rignet, Networks, testing::ValuesIn(all_networks), name_of);
+
+TEST_P(Networks, onednn_equals_the_plain_loops) {
+  const ExampleInput input = test::one_mesh(150, 6, 5);
+  Loops loops(random_parameters(GetParam(), 3));
+  Onednn onednn(random_parameters(GetParam(), 3));
+  EXPECT_LE(test::relative_difference(run(GetParam(), onednn, input.view()), run(GetParam(), loops, input.view())), 1e-5f);
+}
+
+TEST_P(Networks, every_mesh_of_a_batch_gives_what_it_gives_alone) {
+  Random random(6);
+  ExampleInput both;
+  both.add_mesh(90, 4, random);
+  both.add_mesh(71, 3, random);
+  random = Random(6);
+  ExampleInput first;
+  first.add_mesh(90, 4, random);
+  Onednn onednn(random_parameters(GetParam(), 4));
+  const Matrix alone = run(GetParam(), onednn, first.view());
+  EXPECT_TRUE(test::same_bits(run(GetParam(), onednn, both.view()).topRows(alone.rows()), alone));
+}
+
+TEST_P(Networks, the_same_bits_for_any_number_of_threads) {
+  const ExampleInput input = test::one_mesh(400, 12, 7);
+  Onednn onednn(random_parameters(GetParam(), 5));
+  const Matrix one = [&] {
+    const ScopedThreads scope(1);
+    return run(GetParam(), onednn, input.view());
+  }();
+  for (int n : {2, 4}) {
+    const ScopedThreads scope(n);
+    EXPECT_TRUE(test::same_bits(run(GetParam(), onednn, input.view()), one)) << n;
+  }
+}
+
+// The input with vertex v become vertex place[v].
+ExampleInput renumbered(const ExampleInput& input, const std::vector<std::uint32_t>& place) {
+  ExampleInput out = input;
+  std::vector<std::size_t> vertex_at(place.size());
+  for (std::size_t v = 0; v < place.size(); ++v) vertex_at[place[v]] = v;
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    std::copy_n(input.mesh.positions.begin() + static_cast<std::ptrdiff_t>(3 * v), 3, out.mesh.positions.begin() + 3 * place[v]);
+    std::copy_n(input.skin_features.begin() + static_cast<std::ptrdiff_t>(43 * v), 43, out.skin_features.begin() + 43 * place[v]);
+  }
+  auto edges = [&](const nets::EdgeArrays& before) {
+    std::vector<std::uint32_t> offsets{0}, members;
+    for (const std::size_t v : vertex_at) {
+      for (auto e = static_cast<std::size_t>(before.offsets[v]) + 1; e < static_cast<std::size_t>(before.offsets[v + 1]); ++e)
+        members.push_back(place[static_cast<std::size_t>(before.sources[e])]);  // the first is the self loop
+      offsets.push_back(static_cast<std::uint32_t>(members.size()));
+    }
+    nets::EdgeArrays after;
+    after.add(offsets, members, 0);
+    return after;
+  };
+  out.mesh.ring = edges(input.mesh.ring);
+  out.mesh.geodesic = edges(input.mesh.geodesic);
+  return out;
+}
+
+TEST_P(Networks, renumbering_the_vertices_renumbers_the_output_and_nothing_else) {
+  const ExampleInput input = test::one_mesh(200, 5, 8);
+  std::vector<std::uint32_t> place(200);
+  std::iota(place.begin(), place.end(), 0u);
+  Random random(9);
+  random.shuffle<std::uint32_t>(place);
+  Onednn onednn(random_parameters(GetParam(), 6));
+  const Matrix before = run(GetParam(), onednn, input.view());
+  const Matrix after = run(GetParam(), onednn, renumbered(input, place).view());
+  ASSERT_EQ(before.rows(), after.rows());
+  const bool per_vertex = before.rows() == 200;  // the others have a row for each pair or joint
+  for (Eigen::Index r = 0; r < before.rows(); ++r)
+    EXPECT_TRUE(test::same_bits(after.row(per_vertex ? place[static_cast<std::size_t>(r)] : r), before.row(r))) << r;
+}
+
+}  // namespace
+}  // namespace osteon::infer

@@ -76,7 +76,7 @@ class Assembler {
  private:
   PlacedInstance place(const Scene::Instance& instance) {
     Scene::Mesh& mesh = scene_.meshes[instance.mesh];
-    PlacedInstance placed{instance, asset_.mesh.positions.size(), std::nullopt};
+    PlacedInstance placed{instance, asset_.mesh.positions.size(), asset_.mesh.faces.size(), std::nullopt, {}};
     if (placed.first_vertex + mesh.positions.size() > kMostVertices || asset_.mesh.faces.size() + mesh.faces.size() > 2 * kMostVertices)
       throw Error("more than {} vertices or {} faces in all", kMostVertices, 2 * kMostVertices);
     const bool follows_skin = instance.skin && !mesh.influence_offsets.empty();
@@ -104,6 +104,7 @@ class Assembler {
 
   void place_skinned(const Scene::Instance& instance, const Scene::Mesh& mesh, PlacedInstance& placed) {
     const Scene::Skin& skin = scene_.skins[*instance.skin];
+    if (skin.joints.empty()) throw Error("skin {} has no joints", *instance.skin);
     std::vector<Eigen::Affine3d> to_world;
     for (std::size_t j = 0; j < skin.joints.size(); ++j) to_world.push_back(scene_.nodes[skin.joints[j]].world * skin.inverse_binds[j]);
     append_weights(mesh, skin);
@@ -112,17 +113,9 @@ class Assembler {
       append_positions(mesh, *placed.to_world);
       return;
     }
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      double total = 0.0;
-      for (std::uint32_t i = mesh.influence_offsets[v]; i < mesh.influence_offsets[v + 1]; ++i) {
-        const auto [joint, weight] = mesh.influences[i];
-        if (joint >= to_world.size()) continue;  // reported by append_weights
-        sum += static_cast<double>(weight) * (to_world[joint] * mesh.positions[v].cast<double>());
-        total += static_cast<double>(weight);
-      }
-      append_position(total > 0.0 ? Eigen::Vector3d(sum / total) : Eigen::Vector3d(to_world[0] * mesh.positions[v].cast<double>()));
-    }
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      append_position(blended_transform(mesh, v, to_world) * mesh.positions[v].cast<double>());
+    placed.joint_to_world = std::move(to_world);
   }
 
   void append_positions(const Scene::Mesh& mesh, const Eigen::Affine3d& to_world) {
@@ -193,6 +186,18 @@ class Assembler {
 };
 
 }  // namespace
+
+Eigen::Affine3d blended_transform(const Scene::Mesh& mesh, std::size_t vertex, std::span<const Eigen::Affine3d> joint_to_world) {
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  double total = 0.0;
+  for (std::uint32_t i = mesh.influence_offsets[vertex]; i < mesh.influence_offsets[vertex + 1]; ++i) {
+    const auto [joint, weight] = mesh.influences[i];
+    if (joint >= joint_to_world.size()) continue;
+    sum += static_cast<double>(weight) * joint_to_world[joint].matrix();
+    total += static_cast<double>(weight);
+  }
+  return total > 0.0 ? Eigen::Affine3d(sum / total) : joint_to_world[0];
+}
 
 std::vector<PlacedInstance> assemble(Scene&& scene, const LoadOptions& options, Asset& asset) {
   return Assembler(std::move(scene), options, asset).run();

@@ -16,7 +16,7 @@ namespace {
 Asset load_gltf(const std::filesystem::path& path, Bytes bytes, const LoadOptions& options) {
   Asset asset;
   SourceDocument source;
-  source.gltf = GltfSource{gltf::parse(path, std::move(bytes), asset.repairs), {}};
+  source.gltf = GltfSource{gltf::parse(path, std::move(bytes), asset.repairs), {}, {}};
   auto [scene, layouts] = gltf::import_scene(source.gltf->document, asset.repairs);
   source.gltf->layouts = std::move(layouts);
   source.instances = assemble(std::move(scene), options, asset);

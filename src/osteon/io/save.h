@@ -12,9 +12,16 @@ namespace osteon::io {
 // How weights are stored: float, or integers that sum to exactly 255 or 65535 in each vertex.
 enum class WeightFormat { f32, u8, u16 };
 
+// What is done about a transform that the mesh of a glTF had above it (a skin makes viewers ignore that).
+enum class Vertices {
+  keep,  // vertices stay as they are, the inverse bind matrices take the transform up; rewritten only where one matrix cannot do it
+  bake,  // vertices are rewritten in world space
+};
+
 struct SaveOptions {
   int max_influences = 4;  // joints per vertex, 1..8; above 4 a second set of attributes is written (JOINTS_1)
   WeightFormat weights = WeightFormat::f32;
+  Vertices vertices = Vertices::keep;
 };
 
 // Writes `asset` with the given skeleton and weights (one row per vertex of asset.mesh) as a GLB.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,9 +23,24 @@ struct Scene {
     std::uint32_t joint;  // index into Skin::joints
     float weight;
   };
+  struct Material {
+    std::string name;
+    Eigen::Vector4f colour = Eigen::Vector4f::Ones();  // linear, with opacity
+    std::filesystem::path texture;                     // absolute; may not exist; empty if there is none
+  };
+  // Values at the corners of faces, several of which may share one. Empty if the file has none.
+  template <class T>
+  struct Layer {
+    std::vector<T> values;
+    std::vector<std::array<std::uint32_t, 3>> corners;  // for each face, indices into values
+  };
   struct Mesh {
     std::vector<Vec3f> positions;
     std::vector<Triangle> faces;
+    Layer<Vec3f> normals;
+    Layer<Eigen::Vector2f> texture_coordinates;    // origin at the top left, as in glTF
+    std::vector<Eigen::Vector4f> colours;          // linear; one for each position, or none
+    std::vector<std::uint32_t> face_materials;     // one for each face, or none
     std::vector<std::uint32_t> influence_offsets;  // size positions + 1, or empty when nothing is skinned
     std::vector<Influence> influences;
   };
@@ -39,6 +55,7 @@ struct Scene {
   };
 
   std::vector<Node> nodes;
+  std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Skin> skins;
   std::vector<Instance> instances;

@@ -17,8 +17,9 @@ struct MeshLayout {
     bool repaired;  // some of its positions were not finite
   };
   struct Primitive {
-    std::optional<std::size_t> block;            // empty: it has no vertices, or was skipped
-    std::optional<std::vector<Triangle>> faces;  // set when faces had to be dropped: what is left, relative to the block
+    std::optional<std::size_t> block;            // empty: it has no positions and was left out
+    std::size_t first_face = 0, face_count = 0;  // in Scene::Mesh::faces
+    bool faces_dropped = false;                  // some of its faces had indices out of range
   };
   std::vector<Block> blocks;
   std::vector<Primitive> primitives;  // as many as the mesh has
@@ -27,18 +28,31 @@ struct MeshLayout {
 struct GltfSource {
   gltf::Document document;
   std::vector<MeshLayout> layouts;  // one for each glTF mesh
+  // The vertex of Asset::mesh that each vertex of the document's instances is, one instance after the other. Empty: the same numbers.
+  std::vector<VertexId> asset_vertices;
+};
+
+// What else is known of an Asset::mesh that did not come from glTF; its layers are empty where the file had nothing.
+struct Appearance {
+  std::vector<Scene::Material> materials;
+  std::vector<std::uint32_t> face_materials;  // one for each face
+  Scene::Layer<Vec3f> normals;                // world space
+  Scene::Layer<Eigen::Vector2f> texture_coordinates;
+  std::vector<Eigen::Vector4f> colours;  // one for each vertex
 };
 
 // Where a mesh of the scene went in Asset::mesh, and how its vertices came to world space.
 struct PlacedInstance {
   Scene::Instance instance;
-  std::size_t first_vertex;
+  std::size_t first_vertex, first_face;
   // mesh space -> world, if one transform does it for all vertices; empty when a skin that does not stand in its bind pose deforms the mesh
   std::optional<Eigen::Affine3d> to_world;
+  std::vector<Eigen::Affine3d> joint_to_world;  // in that case: mesh space -> world for a vertex of each joint of the skin alone
 };
 
 struct SourceDocument {
-  std::optional<GltfSource> gltf;
+  std::optional<GltfSource> gltf;  // exactly one of the two is there
+  std::optional<Appearance> appearance;
   std::vector<PlacedInstance> instances;
 };
 

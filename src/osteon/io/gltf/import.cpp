@@ -221,13 +221,11 @@ void read_faces(const Document& document, const Element& primitive, const MeshLa
     mesh.faces.push_back({vertex(0), vertex(1), vertex(2)});
   }
   const std::size_t dropped = corners.size() / 3 - (mesh.faces.size() - before);
-  if (dropped == 0) return;
-  repairs.push_back(fmt::format("{}: dropped {} faces with an index beyond its {} vertices", primitive.where(), dropped, block.count));
-  placed.faces.emplace();
-  for (std::size_t f = before; f < mesh.faces.size(); ++f) {
-    const auto local = [&](VertexId v) { return static_cast<VertexId>(index(v) - block.first); };
-    placed.faces->push_back({local(mesh.faces[f][0]), local(mesh.faces[f][1]), local(mesh.faces[f][2])});
-  }
+  placed.first_face = before;
+  placed.face_count = mesh.faces.size() - before;
+  placed.faces_dropped = dropped > 0;
+  if (dropped > 0)
+    repairs.push_back(fmt::format("{}: dropped {} faces with an index beyond its {} vertices", primitive.where(), dropped, block.count));
 }
 
 void read_mesh(const Document& document, std::size_t m, Imported& imported, std::vector<std::string>& repairs) {

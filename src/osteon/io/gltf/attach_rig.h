@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "osteon/io/save.h"
+#include "osteon/io/source_document.h"
+
+namespace osteon::io::gltf {
+
+// Gives the meshes of `source` the skeleton and weights (of the vertices of `mesh`, world space), in place of any rig they had, and brings
+// the document into the form of one GLB. What had to be changed beyond that is added to `changes`.
+// Pre: `mesh` is what the document was read as, or built from; the rig is valid for it.
+void attach_rig(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const Skeleton& skeleton,
+                const SkinWeights& weights, const SaveOptions& options, std::vector<std::string>& changes);
+
+}  // namespace osteon::io::gltf

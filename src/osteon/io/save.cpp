@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/io/save.h"
+
+#include <charconv>
+
+#include "osteon/base/error.h"
+#include "osteon/io/gltf/attach_rig.h"
+#include "osteon/io/gltf/fresh.h"
+
+namespace osteon::io {
+namespace {
+
+void check(const Asset& asset, const Skeleton& skeleton, const SkinWeights& weights, const SaveOptions& options) {
+  validate(asset.mesh);
+  validate(skeleton);
+  validate(weights, asset.mesh.positions.size(), skeleton.size());
+  if (options.max_influences < 1 || options.max_influences > 8)
+    throw Error("max_influences is {}, expected 1 to 8", options.max_influences);
+}
+
+void append_number(std::string& text, float value) {
+  char buffer[32];
+  const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);  // shortest text that reads back the same
+  text += ' ';
+  text.append(buffer, end);
+}
+
+}  // namespace
+
+std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const Skeleton& skeleton,
+                                  const SkinWeights& weights, const SaveOptions& options) {
+  check(asset, skeleton, weights, options);
+  std::vector<std::string> changes;
+  try {
+    const bool from_gltf = asset.source && asset.source->gltf;
+    const Appearance appearance = asset.source && asset.source->appearance ? *asset.source->appearance : Appearance{};
+    const std::string name = asset.path.empty() ? "character" : asset.path.stem().string();
+    GltfSource document = from_gltf ? *asset.source->gltf : gltf::fresh_document(name, asset.mesh, appearance, changes);
+    gltf::attach_rig(document, from_gltf ? asset.source->instances : gltf::fresh_instances(), asset.mesh, skeleton, weights, options,
+                     changes);
+    if (skeleton.size() > 254) changes.push_back(fmt::format("{} joints; viewers on Android show at most 254", skeleton.size()));
+    gltf::write_glb(path, document.document);
+  } catch (const gltf::Json::exception& e) {  // parts of the document that reading the mesh had no need to look at
+    throw Error("{}: malformed glTF: {}", asset.path.filename().string(), e.what());
+  }
+  return changes;
+}
+
+void save_obj(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  std::string text;
+  for (const Vec3f& p : mesh.positions) {
+    text += 'v';
+    for (const float x : p) append_number(text, x);
+    text += '\n';
+  }
+  for (const Triangle& face : mesh.faces) {
+    text += 'f';
+    for (const VertexId v : face) text += fmt::format(" {}", index(v) + 1);
+    text += '\n';
+  }
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  write_file(path, {&bytes, 1});
+}
+
+}  // namespace osteon::io

@@ -47,7 +47,7 @@ struct Local {
   Json node(const std::string& name) const {
     Json node{{"name", name}};
     if (!translation.isZero(0.0f)) node["translation"] = {translation.x(), translation.y(), translation.z()};
-    if (rotation.w() != 1.0f) node["rotation"] = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
+    if (!rotation.vec().isZero(0.0f)) node["rotation"] = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
     return node;
   }
 };

@@ -26,7 +26,7 @@ Normalization normalization_of(const TriangleMesh& mesh);
 struct WorkingMeshOptions {
   std::size_t target_vertices = 1200;  // larger meshes are reduced to about this many
   std::size_t min_vertices = 1000;     // smaller ones are subdivided up to it (paper: 1 to 5 thousand)
-  std::size_t max_vertices = 5000;     // never more: of thousands of separate pieces the smallest are left out
+  std::size_t max_vertices = 5000;     // of hundreds of separate pieces the smallest are left out, so that there are not more
 };
 
 // What the networks see instead of the original.

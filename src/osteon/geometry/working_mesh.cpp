@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/geometry/working_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "osteon/base/error.h"
+#include "osteon/base/parallel.h"
+#include "osteon/geometry/buckets.h"
+#include "osteon/geometry/bvh.h"
+#include "osteon/geometry/decimate.h"
+#include "osteon/geometry/subdivide.h"
+
+namespace osteon::geometry {
+namespace {
+
+constexpr std::size_t kVerticesPerPiece = 6;  // what a mesh of many pieces gets at least, on average
+constexpr float kLongestEdge = 3;             // of the mean spacing of the working mesh's vertices; longer edges are split first
+
+TriangleMesh normalised(TriangleMesh mesh, const Normalization& normalization) {
+  for (Vec3f& p : mesh.positions) p = normalization.apply(p);
+  return mesh;
+}
+
+// Which components stay: all, or the `most` with the largest areas.
+std::vector<bool> largest_components(const TriangleMesh& mesh, const Components& components, std::size_t most) {
+  std::vector<double> areas(components.count, 0);
+  for (FaceId f : mesh.faces.ids()) areas[components.of[mesh.faces[f][0]]] += static_cast<double>(area_vector(mesh, f).norm());
+  std::vector<std::uint32_t> order(components.count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return areas[a] > areas[b]; });
+  std::vector<bool> stays(components.count, false);
+  for (std::size_t i = 0; i < std::min(most, order.size()); ++i) stays[order[i]] = true;
+  return stays;
+}
+
+// The mesh without the vertices for which there is no place, and the new numbers of the others.
+TriangleMesh kept_part(const TriangleMesh& mesh, const std::vector<bool>& stays, const Components& components,
+                       PerVertex<std::optional<VertexId>>& place) {
+  TriangleMesh out;
+  place.resize(mesh.positions.size());
+  for (VertexId v : mesh.positions.ids())
+    if (stays[components.of[v]]) place[v] = out.positions.push_back(mesh.positions[v]);
+  for (const auto& [a, b, c] : mesh.faces)
+    if (place[a]) out.faces.push_back({*place[a], *place[b], *place[c]});
+  return out;
+}
+
+// Even meshes: a body of a few long triangles under a finely modelled head gets vertices before the head loses its own.
+TriangleMesh split_long_edges(TriangleMesh mesh, std::size_t target) {
+  const auto spacing = static_cast<float>(std::sqrt(surface_area(mesh) / static_cast<double>(target)));
+  const std::size_t most = mesh.positions.size() + target;
+  return subdivide(std::move(mesh), {.most_vertices = most, .longest_edge = kLongestEdge * spacing});
+}
+
+// Finds points of the working mesh by walking over it.
+class Surface {
+ public:
+  explicit Surface(const TriangleMesh& mesh) : mesh_(mesh), bvh_(mesh), normals_(mesh.faces.size()) {
+    for (FaceId f : mesh.faces.ids()) normals_[f] = area_vector(mesh, f);
+    rings_ = bucketed<FaceId>(mesh.positions.size(), [&](auto put) {
+      for (FaceId f : mesh.faces.ids())
+        for (VertexId v : mesh.faces[f]) put(index(v), f);
+    });
+  }
+
+  SurfacePoint nearest(const Vec3f& p) const {
+    const ClosestPoint closest = bvh_.closest_point(p);
+    return surface_point(closest.face, closest.barycentric);
+  }
+
+  // The nearest point in the faces around `start`, then around the face found, until that brings nothing more.
+  SurfacePoint walk(const Vec3f& p, const Vec3f& normal, VertexId start) const {
+    Found best;
+    look_around(p, normal, start, best);
+    for (std::optional<FaceId> from; from != best.face;) {
+      from = best.face;
+      for (VertexId corner : mesh_.faces[*from]) look_around(p, normal, corner, best);
+    }
+    return surface_point(*best.face, best.weights);
+  }
+
+ private:
+  struct Found {
+    float cost = std::numeric_limits<float>::infinity();
+    std::optional<FaceId> face;
+    Vec3f weights = Vec3f::Zero();
+  };
+
+  SurfacePoint surface_point(FaceId face, const Vec3f& weights) const {
+    return {mesh_.faces[face], {weights.x(), weights.y(), weights.z()}};
+  }
+
+  // Faces that look the other way count as twice as far: on thin parts (ears, fins, blades) each side then finds its own.
+  void look_around(const Vec3f& p, const Vec3f& normal, VertexId v, Found& best) const {
+    for (FaceId f : rings_.of(index(v))) {
+      const auto [a, b, c] = mesh_.faces[f];
+      const Vec3f weights = closest_barycentric(p, mesh_.positions[a], mesh_.positions[b], mesh_.positions[c]);
+      const Vec3f at = weights.x() * mesh_.positions[a] + weights.y() * mesh_.positions[b] + weights.z() * mesh_.positions[c];
+      const float cost = (at - p).squaredNorm() * (normals_[f].dot(normal) < 0 ? 4.0f : 1.0f);
+      if (cost < best.cost || (cost == best.cost && f < best.face)) best = {cost, f, weights};
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  Bvh bvh_;
+  PerFace<Vec3f> normals_;  // twice the area
+  Buckets<FaceId> rings_;
+};
+
+}  // namespace
+
+Normalization normalization_of(const TriangleMesh& mesh) {
+  const auto box = bounds(mesh);
+  const float side = box.sizes().maxCoeff();
+  if (!(side > 0) || !std::isfinite(1 / side) || !std::isfinite(side)) throw Error("the mesh is {} in size; expected some extent", side);
+  return {1 / side, Vec3f(box.center().x(), box.min().y(), box.center().z())};
+}
+
+WorkingMesh make_working_mesh(const TriangleMesh& original, const WorkingMeshOptions& options) {
+  WorkingMesh out;
+  out.clean = clean(original);
+  if (out.clean.mesh.faces.empty()) throw Error("the mesh has {} faces, but none with area", original.faces.size());
+  out.normalization = normalization_of(out.clean.mesh);
+  out.mesh = normalised(out.clean.mesh, out.normalization);
+
+  const Components components = connected_components(out.mesh);
+  const std::size_t most_pieces = std::max<std::size_t>(1, options.max_vertices / kVerticesPerPiece);
+  out.mesh = kept_part(out.mesh, largest_components(out.mesh, components, most_pieces), components, out.from_clean);
+  const std::size_t pieces = std::min<std::size_t>(components.count, most_pieces);
+  const std::size_t target = std::max(options.target_vertices, pieces * kVerticesPerPiece);
+  out.mesh = split_long_edges(std::move(out.mesh), target);
+  if (out.mesh.positions.size() > target) {
+    DecimatedMesh reduced = decimate(out.mesh, {.target_vertices = target});
+    out.mesh = std::move(reduced.mesh);
+    for (auto& v : out.from_clean)
+      if (v) v = reduced.from_input[*v];
+  } else {
+    out.mesh = subdivide(std::move(out.mesh), {.most_vertices = options.min_vertices});
+  }
+  return out;
+}
+
+PerVertex<SurfacePoint> carry_back(const WorkingMesh& working) {
+  const TriangleMesh& clean = working.clean.mesh;
+  const PerVertex<Vec3f> normals = vertex_normals(clean);
+  const Surface surface(working.mesh);
+  PerVertex<SurfacePoint> of_clean(clean.positions.size());
+  parallel_for(clean.positions.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (VertexId v : ids<VertexId>(end) | std::views::drop(begin)) {
+      const Vec3f p = working.normalization.apply(clean.positions[v]);
+      of_clean[v] = working.from_clean[v] ? surface.walk(p, normals[v], *working.from_clean[v]) : surface.nearest(p);
+    }
+  });
+  PerVertex<SurfacePoint> out;
+  out.reserve(working.clean.from_original.size());
+  for (VertexId v : working.clean.from_original) out.push_back(of_clean[v]);
+  return out;
+}
+
+}  // namespace osteon::geometry

@@ -17,15 +17,15 @@ namespace osteon::pipelines {
 enum class Symmetry { automatic, off };
 
 struct RignetOptions {
-  std::optional<float> bandwidth;     // of the mean shift, kFinestBandwidth..kCoarsestBandwidth; else by `detail`
-  float detail = 0.5f;                // 0 (few joints) .. 1 (many)
-  std::optional<std::size_t> joints;  // about this many: the bandwidth is searched, and the two above are not read
+  std::optional<float> bandwidth = {};     // of the mean shift, kFinestBandwidth..kCoarsestBandwidth; else by `detail`
+  float detail = 0.5f;                     // 0 (few joints) .. 1 (many)
+  std::optional<std::size_t> joints = {};  // about this many: the bandwidth is searched, and the two above are not read
   Symmetry symmetry = Symmetry::automatic;
-  std::optional<Skeleton> skeleton;  // use this one, in the mesh's world coordinates, and only skin it
-  geometry::WorkingMeshOptions working_mesh;
-  JointExtractionOptions extraction;  // its bandwidth is not read
-  TreeOptions tree;
-  SkinPredictionOptions skin;  // with the number of influences
+  std::optional<Skeleton> skeleton = {};  // use this one, in the mesh's world coordinates, and only skin it
+  geometry::WorkingMeshOptions working_mesh = {};
+  JointExtractionOptions extraction = {};  // its bandwidth is not read
+  TreeOptions tree = {};
+  SkinPredictionOptions skin = {};  // with the number of influences
 };
 
 struct RignetResult {

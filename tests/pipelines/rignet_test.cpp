@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/rignet.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "osteon/base/parallel.h"
+#include "osteon/base/random.h"
+#include "osteon/base/safetensors.h"
+#include "osteon/mesh/shapes.h"
+#include "osteon/nets/dry_run.h"
+#include "osteon/rig/rig.h"
+#include "support/expect.h"
+
+namespace osteon::pipelines {
+namespace {
+
+using nets::rignet::Network;
+using testing::HasSubstr;
+
+// A file with seeded random parameters of a network: uniform as a linear layer starts, normalisation near the identity.
+void write_random(const std::filesystem::path& path, Network network, std::uint64_t seed) {
+  Random random(seed);
+  Safetensors content;
+  for (const auto& [name, shape] : nets::rignet::parameter_shapes(network)) {
+    const auto count = std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies());
+    const float bound = shape.size() == 2 ? 1.5f / std::sqrt(static_cast<float>(shape[1])) : 0.1f;
+    std::vector<float> values(static_cast<std::size_t>(count));
+    const bool is_variance = name.ends_with("running_var");
+    for (float& v : values) v = is_variance ? random.uniform(0.5f, 1.5f) : random.uniform(-bound, bound);
+    content.arrays[name] = Array::of<float>(values, shape);
+  }
+  save_safetensors(path, content);
+}
+
+// Networks that were never trained: whatever they say, the rig has to be valid.
+const infer::RignetModels& untrained() {
+  static const infer::RignetModels models = [] {
+    const test::TemporaryFolder folder;
+    const std::pair<const char*, Network> files[] = {{"attention", Network::attention},
+                                                     {"joints", Network::joints},
+                                                     {"bones", Network::bones},
+                                                     {"root", Network::root},
+                                                     {"skin", Network::skin}};
+    std::uint64_t seed = 1;
+    for (const auto& [name, network] : files) write_random(folder / (std::string(name) + ".safetensors"), network, seed++);
+    return infer::RignetModels::load(folder.path());
+  }();
+  return models;
+}
+
+TriangleMesh placed(const TriangleMesh& mesh, const Vec3f& at, float turn_z) {
+  return shapes::transformed(mesh, Eigen::Translation3f(at) * Transform(Eigen::AngleAxisf(turn_z, Vec3f::UnitZ())));
+}
+
+// Trunk, head, two legs, two arms: five overlapping parts, in centimetres and away from the origin.
+TriangleMesh figure() {
+  TriangleMesh mesh = placed(shapes::capsule(0.13f, 0.45f), {0, 0.85f, 0}, 0.0f);
+  mesh = shapes::merged(mesh, placed(shapes::icosphere(2, 0.15f), {0, 1.6f, 0.02f}, 0.0f));
+  for (float side : {1.0f, -1.0f}) {
+    mesh = shapes::merged(mesh, placed(shapes::capsule(0.07f, 0.75f), {side * 0.1f, 0.07f, 0}, 0.0f));
+    mesh = shapes::merged(mesh, placed(shapes::capsule(0.05f, 0.6f), {side * 0.12f, 1.3f, 0}, -side * 1.5f));
+  }
+  return shapes::transformed(mesh, Transform(Eigen::Translation3f(10, -4, 20) * Eigen::Scaling(100.0f)));
+}
+
+const RignetResult& rigged_figure() {
+  static const RignetResult result = rig_character(figure(), untrained());
+  return result;
+}
+
+void expect_usable(const TriangleMesh& mesh, const RignetResult& result) {
+  validate(Rig{mesh, result.skeleton, result.weights});
+  const RigReport& report = result.report;
+  EXPECT_GE(report.confidence, 0.0f);
+  EXPECT_LE(report.confidence, 1.0f);
+  EXPECT_EQ(report.joints, result.skeleton.size());
+  EXPECT_EQ(report.vertices, mesh.positions.size());
+  EXPECT_FALSE(report.stages.empty());
+}
+
+Skeleton straight(const TriangleMesh& mesh) {
+  Skeleton skeleton;
+  const auto box = bounds(mesh);
+  const Vec3f middle = box.center();
+  const JointId low = skeleton.add("low", std::nullopt, {middle.x(), box.min().y(), middle.z()});
+  skeleton.add("high", skeleton.add("mid", low, middle), {middle.x(), box.max().y(), middle.z()});
+  return skeleton;
+}
+
+TEST(RigCharacter, untrained_networks_still_give_a_valid_rig) {
+  expect_usable(figure(), rigged_figure());
+  EXPECT_TRUE(rigged_figure().report.symmetry_error.has_value());
+  EXPECT_LE(rigged_figure().weights.max_influences(), 4u);
+}
+
+TEST(RigCharacter, joints_lie_in_the_world_of_the_mesh) {
+  const auto box = bounds(figure());
+  for (const Vec3f& p : rigged_figure().skeleton.rest_positions) EXPECT_TRUE(box.contains(p)) << p.transpose();
+}
+
+TEST(RigCharacter, any_number_of_threads_gives_the_same_rig) {
+  const int before = threads();
+  for (int n : {1, 3}) {
+    set_threads(n);
+    const RignetResult result = rig_character(figure(), untrained());
+    EXPECT_EQ(result.skeleton.names, rigged_figure().skeleton.names);
+    EXPECT_EQ(result.skeleton.rest_positions, rigged_figure().skeleton.rest_positions);
+    EXPECT_EQ(result.weights, rigged_figure().weights);
+  }
+  set_threads(before);
+}
+
+TEST(RigCharacter, renumbered_vertices_and_faces_give_the_same_rig) {
+  const TriangleMesh mesh = figure();
+  Random random(5);
+  std::vector<VertexId> new_place(mesh.positions.size());
+  for (std::size_t i = 0; i < new_place.size(); ++i) new_place[i] = static_cast<VertexId>(i);
+  random.shuffle(std::span(new_place));
+  TriangleMesh other = mesh;
+  for (VertexId v : mesh.positions.ids()) other.positions[new_place[index(v)]] = mesh.positions[v];
+  random.shuffle(std::span(other.faces.raw()));
+  for (Triangle& t : other.faces)
+    for (VertexId& v : t) v = new_place[index(v)];
+  const RignetResult &a = rigged_figure(), b = rig_character(other, untrained());
+  EXPECT_EQ(a.skeleton.names, b.skeleton.names);
+  EXPECT_EQ(a.skeleton.parents, b.skeleton.parents);
+  EXPECT_EQ(a.skeleton.rest_positions, b.skeleton.rest_positions);
+  for (VertexId v : mesh.positions.ids()) EXPECT_TRUE(std::ranges::equal(a.weights[v], b.weights[new_place[index(v)]])) << index(v);
+}
+
+TEST(RigCharacter, a_given_skeleton_is_kept_and_skinned) {
+  const TriangleMesh mesh = figure();
+  const Skeleton skeleton = straight(mesh);
+  const RignetResult result = rig_character(mesh, untrained(), {.skeleton = skeleton, .skin = {.max_influences = 2}});
+  expect_usable(mesh, result);
+  EXPECT_EQ(result.skeleton.names, skeleton.names);
+  EXPECT_EQ(result.skeleton.rest_positions, skeleton.rest_positions);
+  EXPECT_LE(result.weights.max_influences(), 2u);
+  EXPECT_FALSE(result.report.joint_confidence.has_value());
+}
+
+TEST(RigCharacter, shapes_that_are_no_characters_get_a_valid_rig_too) {
+  const std::pair<const char*, TriangleMesh> meshes[] = {
+      {"cube", shapes::box({1, 1, 1})},
+      {"sheet", shapes::sheet(9, 9)},
+      {"sphere", shapes::icosphere(3, 1e-3f)},
+      {"one face",
+       [] {
+         TriangleMesh m;
+         for (const Vec3f& p : {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0)}) m.positions.push_back(p);
+         m.faces.push_back({VertexId{0}, VertexId{1}, VertexId{2}});
+         return m;
+       }()},
+      {"far pieces", shapes::merged(shapes::icosphere(1), placed(shapes::icosphere(1), {50, 0, 0}, 0.0f))}};
+  for (const auto& [name, mesh] : meshes) {
+    SCOPED_TRACE(name);
+    expect_usable(mesh, rig_character(mesh, untrained()));
+    expect_usable(mesh, rig_character(mesh, untrained(), {.symmetry = Symmetry::off}));
+  }
+}
+
+TEST(RigCharacter, options_out_of_range_are_named) {
+  const TriangleMesh mesh = figure();
+  EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.bandwidth = 0.5f}); }), HasSubstr("bandwidth: 0.5 found"));
+  EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.detail = 2.0f}); }), HasSubstr("detail: 2 found"));
+  EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.joints = 0}); }), HasSubstr("joints: 0 found"));
+  EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.skeleton = Skeleton{}}); }), HasSubstr("no joints"));
+}
+
+TEST(RigCharacter, progress_rises_and_may_cancel) {
+  const TriangleMesh mesh = figure();
+  double last = -1.0;
+  rig_character(mesh, untrained(), {.skeleton = straight(mesh)}, [&](std::string_view, double done) {
+    EXPECT_GT(done, last);
+    EXPECT_LT(done, 1.0);
+    last = done;
+  });
+  EXPECT_GT(last, 0.0);
+  EXPECT_THROW(rig_character(mesh, untrained(), {},
+                             [](std::string_view stage, double) {
+                               if (stage == "voxels") throw Cancelled();
+                             }),
+               Cancelled);
+}
+
+}  // namespace
+}  // namespace osteon::pipelines

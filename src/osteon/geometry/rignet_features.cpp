@@ -47,6 +47,8 @@ Matrix pair_features(std::span<const Vec3f> joints, const VoxelGrid& grid) {
 
 float proximity(float distance) { return 0.1f / (distance + 0.02f); }
 
+float distance_of_proximity(float proximity) { return 0.1f / proximity - 0.02f; }
+
 SkinInputs skin_inputs(std::span<const Vec3f> positions, std::span<const Segment> bones, std::span<const std::uint8_t> leaf,
                        const Matrix& distances, int k) {
   assert(!bones.empty() && leaf.size() == bones.size() && k > 0);

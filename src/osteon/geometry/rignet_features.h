@@ -28,6 +28,7 @@ struct SkinInputs {
 // Bounded stand-in for RigNet's 1 / (D + 1e-10), which reaches 1e10 for a vertex on a bone: 0.1 / (D + 0.02), so 5 on the bone, 1 at D =
 // 0.08 (about the radius of a trunk), under 0.1 out of reach.
 float proximity(float distance);
+float distance_of_proximity(float proximity);  // the way back
 
 // The k nearest bones of each vertex by `distances`, (V,B), from volumetric_geodesic_distance; ties: the smaller index. `leaf` (B) is 1 for
 // the zero-length bones at leaf joints. Pre: B >= 1, positions and rows of `distances` are equally many.

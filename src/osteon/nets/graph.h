@@ -70,6 +70,14 @@ struct PairArrays {
   std::vector<std::int32_t> mesh_of;        // (P)
 };
 
+// The inputs of all networks; what a network does not use may be empty.
+struct NetworkInputs {
+  MeshArrays mesh;
+  JointArrays joints;
+  PairArrays pairs;
+  std::vector<float> skin_features;  // (V,43)
+};
+
 template <class B>
 struct Batch {
   typename B::Index offsets;  // (M+1)

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "osteon/base/random.h"
+#include "osteon/base/types.h"
+
+namespace osteon::dataset {
+
+struct AugmentOptions {
+  float mirror = 0.5f;        // probability of x -> -x
+  float quarter_turn = 0.1f;  // probability of turning by 90, 180 or 270 degrees about y
+  float yaw = 0.2f;           // largest small turn about y, radians
+  float tilt = 0.07f;         // largest turns about x and z
+  float stretch = 0.12f;      // each axis is scaled by exp(u), |u| <= stretch
+};
+
+// An affine map of a character: its labels stay true.
+struct Placement {
+  Eigen::Matrix3f linear = Eigen::Matrix3f::Identity();
+  Vec3f offset = Vec3f::Zero();
+  float length_scale = 1.0f;  // mean change of lengths: cube root of |determinant|
+
+  Vec3f apply(const Vec3f& p) const { return linear * p + offset; }
+};
+
+// A random map after which the positions are normalised again: longest side 1, feet on y = 0, centred on x and z. Pre: not empty.
+Placement random_placement(std::span<const Vec3f> positions, const AugmentOptions& options, Random& random);
+
+}  // namespace osteon::dataset

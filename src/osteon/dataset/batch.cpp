@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/dataset/batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "osteon/base/parallel.h"
+#include "osteon/geometry/symmetry.h"
+
+namespace osteon::dataset {
+namespace {
+
+std::vector<float> plane_distances(const PreparedCharacter& character) {
+  const Plane plane = geometry::symmetry_plane(character.mesh).value_or(Plane{Vec3f::UnitX(), 0.0f});
+  std::vector<float> distances;
+  for (const Vec3f& p : character.skeleton.rest_positions) distances.push_back(std::abs(plane.signed_distance(p)));
+  return distances;
+}
+
+Example example_of(PreparedCharacter character) {
+  Example example;
+  example.pair_features = geometry::pair_features(character.skeleton.rest_positions.raw(), character.voxels);
+  example.pair_labels = pair_labels(character.skeleton);
+  example.plane_distance = plane_distances(character);
+  const geometry::SkinInputs inputs = skin_inputs(character);
+  example.skin_features = inputs.features;
+  example.skin_targets = skin_targets(character, inputs);
+  example.character = std::move(character);
+  return example;
+}
+
+void append(std::vector<float>& to, const Vec3f& p) { to.insert(to.end(), {p.x(), p.y(), p.z()}); }
+
+void add_mesh(nets::MeshArrays& mesh, const PreparedCharacter& character, const Placement& placement,
+              const geometry::Neighbourhoods& near) {
+  const std::int32_t first = mesh.batch.rows();
+  for (const Vec3f& p : character.mesh.positions) append(mesh.positions, placement.apply(p));
+  mesh.ring.add(character.one_ring.offsets, character.one_ring.members, first);
+  mesh.geodesic.add(near.offsets, near.members, first);
+  mesh.batch.add(character.vertices());
+}
+
+void add_joints(Batch& batch, const Example& example, const Placement& placement) {
+  nets::JointArrays& joints = batch.inputs.joints;
+  const std::int32_t first = joints.batch.rows();
+  for (const Vec3f& p : example.character.skeleton.rest_positions) append(joints.positions, placement.apply(p));
+  for (const float d : example.plane_distance) joints.plane_distance.push_back(d * placement.length_scale);
+  joints.pairs.add_complete(static_cast<std::int32_t>(example.character.joints()), first);
+  joints.batch.add(example.character.joints());
+  batch.targets.root.push_back(first);  // joint 0 is the root
+  const auto& attention = example.character.attention;
+  batch.targets.attention.insert(batch.targets.attention.end(), attention.begin(), attention.end());
+}
+
+// A pair of joints of one example, by their rows there; `row` is that of its features.
+struct Pair {
+  std::int32_t first, second;
+  Eigen::Index row;
+};
+
+std::vector<Pair> pairs_of(const Example& example) {
+  std::vector<Pair> pairs;
+  const auto count = static_cast<std::int32_t>(example.character.joints());
+  for (std::int32_t i = 0; i < count; ++i)
+    for (std::int32_t j = i + 1; j < count; ++j) pairs.push_back({i, j, static_cast<Eigen::Index>(pairs.size())});
+  return pairs;
+}
+
+// Appends a pair of the mesh that was added last.
+void add_pair(Batch& batch, const Example& example, const Pair& pair, const Placement& placement) {
+  nets::PairArrays& pairs = batch.inputs.pairs;
+  const auto& starts = batch.inputs.joints.batch.offsets;
+  const auto& positions = example.character.skeleton.rest_positions.raw();
+  const auto mesh = static_cast<std::int32_t>(starts.size()) - 2;
+  const Vec3f a = placement.apply(positions[static_cast<std::size_t>(pair.first)]);
+  const Vec3f b = placement.apply(positions[static_cast<std::size_t>(pair.second)]);
+  pairs.first.push_back(starts[mesh] + pair.first);
+  pairs.second.push_back(starts[mesh] + pair.second);
+  pairs.mesh_of.push_back(mesh);
+  append(pairs.features, a);
+  append(pairs.features, b);
+  pairs.features.push_back((a - b).norm());
+  pairs.features.push_back(example.pair_features(pair.row, 7));  // the share inside is the same after an affine map
+  batch.targets.connected.push_back(example.pair_labels[static_cast<std::size_t>(pair.row)]);
+}
+
+// Positions and bone ends move with the placement, proximities with the distances.
+void add_skin(Batch& batch, const Example& example, const Placement& placement) {
+  std::vector<float>& out = batch.inputs.skin_features;
+  const Matrix& features = example.skin_features;
+  for (Eigen::Index v = 0; v < features.rows(); ++v) {
+    append(out, placement.apply(features.row(v).head<3>().transpose()));
+    for (Eigen::Index column = 3; column < features.cols(); column += geometry::kBoneFeatures) {
+      append(out, placement.apply(features.row(v).segment<3>(column).transpose()));
+      append(out, placement.apply(features.row(v).segment<3>(column + 3).transpose()));
+      out.push_back(geometry::proximity(geometry::distance_of_proximity(features(v, column + 6)) * placement.length_scale));
+      out.push_back(features(v, column + 7));
+    }
+  }
+  const Matrix& weights = example.skin_targets.weights;
+  batch.targets.skin.insert(batch.targets.skin.end(), weights.data(), weights.data() + weights.size());
+  const auto& covered = example.skin_targets.covered;
+  batch.targets.skin_share.insert(batch.targets.skin_share.end(), covered.begin(), covered.end());
+}
+
+}  // namespace
+
+std::vector<Example> examples_of(std::vector<PreparedCharacter> characters) {
+  std::vector<Example> examples(characters.size());
+  parallel_for(characters.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) examples[i] = example_of(std::move(characters[i]));
+  });
+  return examples;
+}
+
+std::vector<double> sampling_weights(std::span<const Example> examples) {
+  std::map<std::string, double> group_size, category_weight;
+  for (const Example& e : examples) group_size[e.character.info.group] += 1.0;
+  std::vector<double> weights;
+  for (const Example& e : examples) {
+    weights.push_back(1.0 / std::sqrt(group_size[e.character.info.group]));
+    category_weight[e.character.info.category] += weights.back();
+  }
+  for (std::size_t i = 0; i < examples.size(); ++i) weights[i] /= std::sqrt(category_weight[examples[i].character.info.category]);
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& w : weights) w /= sum;
+  return weights;
+}
+
+std::vector<std::size_t> draw(std::span<const double> weights, std::size_t count, Random& random) {
+  std::vector<double> left(weights.begin(), weights.end());
+  std::vector<std::size_t> drawn;
+  while (drawn.size() < std::min(count, left.size())) {
+    double at = random.uniform() * std::accumulate(left.begin(), left.end(), 0.0);
+    std::size_t i = 0;
+    while (i + 1 < left.size() && (left[i] == 0.0 || at >= left[i])) at -= left[i++];
+    if (left[i] == 0.0) continue;  // rounding led past the last one: draw again
+    left[i] = 0.0;
+    drawn.push_back(i);
+  }
+  return drawn;
+}
+
+Batch training_batch(std::span<const Example* const> examples, const BatchOptions& options, const AugmentOptions& augment, Random& random) {
+  Batch batch;
+  for (const Example* example : examples) {
+    const PreparedCharacter& character = example->character;
+    const Placement placement = random_placement(character.mesh.positions.raw(), augment, random);
+    add_mesh(batch.inputs.mesh, character, placement, geometry::drawn(character.balls, options.neighbours, random));
+    add_joints(batch, *example, placement);
+    if (options.parts == Parts::skin) add_skin(batch, *example, placement);
+    if (options.parts != Parts::pairs) continue;
+    for (Pair pair : pairs_of(*example)) {
+      if (random.uniform() < 0.5f) std::swap(pair.first, pair.second);
+      add_pair(batch, *example, pair, placement);
+    }
+  }
+  return batch;
+}
+
+Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& options) {
+  Batch batch;
+  for (const Example* example : examples) {
+    const PreparedCharacter& character = example->character;
+    add_mesh(batch.inputs.mesh, character, {}, geometry::evenly(character.balls, options.neighbours));
+    add_joints(batch, *example, {});
+    if (options.parts == Parts::skin) add_skin(batch, *example, {});
+    if (options.parts != Parts::pairs) continue;
+    const std::vector<Pair> pairs = pairs_of(*example);
+    for (const Pair& pair : pairs) add_pair(batch, *example, pair, {});
+    for (const Pair& pair : pairs) add_pair(batch, *example, {pair.second, pair.first, pair.row}, {});
+  }
+  return batch;
+}
+
+}  // namespace osteon::dataset

@@ -6,29 +6,34 @@
 namespace osteon::infer {
 namespace {
 
-// Folding is done in double: its rounding would otherwise add to that of every product.
-using Wide = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using WideVector = Eigen::VectorXd;
+using Vector = Eigen::VectorXd;  // biases are sums, so in double
 
-WideVector wide(const std::vector<float>& values) {
-  return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size())).cast<double>();
+Eigen::Map<const Eigen::VectorXf> vector(const std::vector<float>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
-std::vector<float> narrow(const WideVector& values) {
+std::vector<float> narrow(const Vector& values) {
   const Eigen::VectorXf floats = values.cast<float>();
   return {floats.begin(), floats.end()};
 }
 
-struct WideLayer {
-  Wide weights;
-  WideVector bias;
+struct Layer {
+  Matrix weights;
+  Vector bias;
 };
 
-WideLayer linear_at(const Parameters& parameters, const nets::Path& path) {
-  return {parameters.at(path / "weight").cast<double>(), parameters.at(path / "bias").row(0).transpose().cast<double>()};
+Layer linear_at(const Parameters& parameters, const nets::Path& path) {
+  return {parameters.at(path / "weight"), parameters.at(path / "bias").row(0).transpose().cast<double>()};
 }
 
-WideLayer folded(const WideLayer& layer, const Affine& input) {
-  return {layer.weights * wide(input.scale).asDiagonal(), layer.bias + layer.weights * wide(input.shift)};
+Layer folded(Layer layer, const Affine& input) {
+  const Vector shift = vector(input.shift).cast<double>();
+  const auto scale = vector(input.scale).transpose().array();
+  for (Eigen::Index r = 0; r < layer.weights.rows(); ++r) {
+    auto row = layer.weights.row(r);
+    layer.bias[r] += row.cast<double>().dot(shift);
+    row.array() *= scale;
+  }
+  return layer;
 }
 
 }  // namespace
@@ -41,29 +46,29 @@ Affine normalization(const Parameters& parameters, const nets::Path& path) {
 }
 
 tensor::DenseLayer folded_linear(const Parameters& parameters, const nets::Path& path, const Affine& input, tensor::Activation activation) {
-  const WideLayer layer = folded(linear_at(parameters, path), input);
-  return {layer.weights.cast<float>(), narrow(layer.bias), activation};
+  Layer layer = folded(linear_at(parameters, path), input);
+  return {std::move(layer.weights), narrow(layer.bias), activation};
 }
 
 tensor::EdgeConvolution::Weights folded_edge_convolution(const Parameters& parameters, const nets::Path& path, const Affine& input) {
-  const WideLayer first = linear_at(parameters, path / 0 / "linear");
-  const WideLayer second = folded(linear_at(parameters, path / 1 / "linear"), normalization(parameters, path / 0 / "norm"));
+  const Layer first = linear_at(parameters, path / 0 / "linear");
+  Layer second = folded(linear_at(parameters, path / 1 / "linear"), normalization(parameters, path / 0 / "norm"));
   const Affine last = normalization(parameters, path / 1 / "norm");
   const Eigen::Index width = first.weights.rows(), columns = first.weights.cols() / 2;
 
   // [A|B] [x_v; x_u - x_v] + b = ((A - B) x_v + b) + B x_u
   const auto receiver = first.weights.leftCols(columns), difference = first.weights.rightCols(columns);
-  WideLayer ends{Wide(2 * width, columns), WideVector(2 * width)};
+  Layer ends{Matrix(2 * width, columns), Vector(2 * width)};
   ends.weights << receiver - difference, difference;
-  ends.bias << first.bias, WideVector::Zero(width);
+  ends.bias << first.bias, Vector::Zero(width);
   ends = folded(ends, input);
 
   std::vector<float> sign;
-  for (const float scale : last.scale) sign.push_back(scale < 0 ? -1.0f : 1.0f);
-  return {{ends.weights.cast<float>(), narrow(ends.bias), tensor::Activation::none},
-          (wide(sign).asDiagonal() * second.weights).cast<float>(),
-          sign,
-          narrow(second.bias)};
+  for (Eigen::Index r = 0; r < width; ++r) {
+    sign.push_back(last.scale[static_cast<std::size_t>(r)] < 0 ? -1.0f : 1.0f);
+    second.weights.row(r) *= sign.back();
+  }
+  return {{std::move(ends.weights), narrow(ends.bias), tensor::Activation::none}, std::move(second.weights), sign, narrow(second.bias)};
 }
 
 }  // namespace osteon::infer

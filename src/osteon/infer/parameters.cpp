@@ -13,42 +13,42 @@ namespace {
 
 std::string text(const std::vector<std::int64_t>& shape) { return fmt::format("({})", fmt::join(shape, ",")); }
 
+bool has_floats(const Array& array) { return array.dtype == DType::f32 || array.dtype == DType::f16; }
+
 Matrix as_matrix(const Array& array) {
   const auto rows = array.shape.size() > 1 ? array.shape[0] : 1;
   const std::vector<float> values = array.values<float>();
   return Eigen::Map<const Matrix>(values.data(), rows, rows == 0 ? 0 : array.count() / rows);
 }
 
-// What is wrong with a tensor that the network and the file both have; empty if nothing.
-std::string fault_of(const std::string& name, const Array& found, const std::vector<std::int64_t>& shape) {
-  if (found.shape != shape) return fmt::format("{}: shape {}, expected {}", name, text(found.shape), text(shape));
-  if (found.dtype != DType::f32 && found.dtype != DType::f16) return fmt::format("{}: neither float32 nor float16", name);
-  const Matrix values = as_matrix(found);
+// What is wrong with the values of a parameter; empty if nothing.
+std::string fault_of(const std::string& name, const Matrix& values) {
   if (!values.allFinite()) return fmt::format("{}: has values that are not finite", name);
   if (name.ends_with("running_var") && values.minCoeff() < 0) return fmt::format("{}: has negative variances", name);
   return {};
 }
 
-std::vector<std::string> differences(const Safetensors& content, const Shapes& expected) {
-  std::vector<std::string> out;
-  for (const auto& [name, shape] : expected) {
-    const auto found = content.arrays.find(name);
-    if (found == content.arrays.end())
-      out.push_back(fmt::format("{}: missing, expected {}", name, text(shape)));
-    else if (std::string fault = fault_of(name, found->second, shape); !fault.empty())
-      out.push_back(std::move(fault));
-  }
-  for (const auto& [name, array] : content.arrays)
-    if (!expected.contains(name)) out.push_back(fmt::format("{}: {} is no parameter of this network", name, text(array.shape)));
-  return out;
-}
-
 }  // namespace
 
 Parameters::Parameters(const Safetensors& content, const Shapes& expected, std::string_view source) {
-  if (const auto wrong = differences(content, expected); !wrong.empty())
+  std::vector<std::string> wrong;
+  for (const auto& [name, shape] : expected) {
+    const auto found = content.arrays.find(name);
+    if (found == content.arrays.end()) {
+      wrong.push_back(fmt::format("{}: missing, expected {}", name, text(shape)));
+    } else if (found->second.shape != shape) {
+      wrong.push_back(fmt::format("{}: shape {}, expected {}", name, text(found->second.shape), text(shape)));
+    } else if (!has_floats(found->second)) {
+      wrong.push_back(fmt::format("{}: neither float32 nor float16", name));
+    } else {
+      const Matrix& values = matrices_.emplace(name, as_matrix(found->second)).first->second;
+      if (std::string fault = fault_of(name, values); !fault.empty()) wrong.push_back(std::move(fault));
+    }
+  }
+  for (const auto& [name, array] : content.arrays)
+    if (!expected.contains(name)) wrong.push_back(fmt::format("{}: {} is no parameter of this network", name, text(array.shape)));
+  if (!wrong.empty())
     throw Error("{}: {} of {} parameters do not fit the network:\n  {}", source, wrong.size(), expected.size(), fmt::join(wrong, "\n  "));
-  for (const auto& [name, shape] : expected) matrices_.emplace(name, as_matrix(content.at(name)));
 }
 
 const Matrix& Parameters::at(const nets::Path& name) const {

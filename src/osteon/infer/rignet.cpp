@@ -29,11 +29,12 @@ namespace {
 namespace fs = std::filesystem;
 using nets::rignet::Network;
 
+// The large ones first, so that loading them in parallel ends evenly.
 constexpr std::array<std::pair<Network, const char*>, 5> files{{{Network::joints, "joints.safetensors"},
                                                                 {Network::attention, "attention.safetensors"},
+                                                                {Network::skin, "skin.safetensors"},
                                                                 {Network::bones, "bones.safetensors"},
-                                                                {Network::root, "root.safetensors"},
-                                                                {Network::skin, "skin.safetensors"}}};
+                                                                {Network::root, "root.safetensors"}}};
 
 void require_files(const fs::path& folder) {
   std::vector<std::string> missing;

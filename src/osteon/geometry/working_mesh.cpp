@@ -2,6 +2,7 @@
 #include "osteon/geometry/working_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -16,7 +17,7 @@
 namespace osteon::geometry {
 namespace {
 
-constexpr std::size_t kVerticesPerPiece = 6;  // what a mesh of many pieces gets at least, on average
+constexpr std::size_t kVerticesPerPiece = 4;  // what the least that can be left of a closed piece takes
 constexpr float kLongestEdge = 3;             // of the mean spacing of the working mesh's vertices; longer edges are split first
 
 TriangleMesh normalised(TriangleMesh mesh, const Normalization& normalization) {
@@ -120,6 +121,7 @@ Normalization normalization_of(const TriangleMesh& mesh) {
 }
 
 WorkingMesh make_working_mesh(const TriangleMesh& original, const WorkingMeshOptions& options) {
+  assert(options.min_vertices <= options.target_vertices && options.target_vertices <= options.max_vertices);
   WorkingMesh out;
   out.clean = clean(original);
   if (out.clean.mesh.faces.empty()) throw Error("the mesh has {} faces, but none with area", original.faces.size());
@@ -127,10 +129,10 @@ WorkingMesh make_working_mesh(const TriangleMesh& original, const WorkingMeshOpt
   out.mesh = normalised(out.clean.mesh, out.normalization);
 
   const Components components = connected_components(out.mesh);
-  const std::size_t most_pieces = std::max<std::size_t>(1, options.max_vertices / kVerticesPerPiece);
+  const std::size_t most_pieces = 1 + (options.max_vertices - options.target_vertices) / kVerticesPerPiece;
   out.mesh = kept_part(out.mesh, largest_components(out.mesh, components, most_pieces), components, out.from_clean);
   const std::size_t pieces = std::min<std::size_t>(components.count, most_pieces);
-  const std::size_t target = std::max(options.target_vertices, pieces * kVerticesPerPiece);
+  const std::size_t target = options.target_vertices + kVerticesPerPiece * (pieces - 1);
   out.mesh = split_long_edges(std::move(out.mesh), target);
   if (out.mesh.positions.size() > target) {
     DecimatedMesh reduced = decimate(out.mesh, {.target_vertices = target});

@@ -23,10 +23,10 @@ struct Normalization {
 // Throws Error when the mesh has no extent at all.
 Normalization normalization_of(const TriangleMesh& mesh);
 
-struct WorkingMeshOptions {
-  std::size_t target_vertices = 1200;  // larger meshes are reduced to about this many
+struct WorkingMeshOptions {            // min <= target <= max
+  std::size_t target_vertices = 1200;  // larger meshes are reduced to about this many, and 4 more for every separate piece but one
   std::size_t min_vertices = 1000;     // smaller ones are subdivided up to it (paper: 1 to 5 thousand)
-  std::size_t max_vertices = 5000;     // of hundreds of separate pieces the smallest are left out, so that there are not more
+  std::size_t max_vertices = 5000;     // of many hundred pieces the smallest are left out, so that there are not more
 };
 
 // What the networks see instead of the original.

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/geometry/decimate.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "geometry/mesh_makers.h"
+#include "osteon/base/parallel.h"
+#include "osteon/geometry/cleanup.h"
+#include "osteon/mesh/shapes.h"
+#include "support/expect.h"
+
+namespace osteon::geometry {
+namespace {
+
+void expect_every_vertex_used(const TriangleMesh& mesh) {
+  PerVertex<std::uint8_t> used(mesh.positions.size());
+  for (const Triangle& t : mesh.faces)
+    for (VertexId v : t) used[v] = 1;
+  EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0);
+}
+
+TEST(Decimate, a_sphere_stays_a_sphere) {
+  const auto [mesh, from] = decimate(shapes::icosphere(5), {.target_vertices = 600});
+  EXPECT_EQ(mesh.positions.size(), 600u);
+  EXPECT_EQ(mesh.faces.size(), 2 * 600u - 4);  // Euler: still closed and of genus 0
+  for (const Vec3f& p : mesh.positions) EXPECT_NEAR(p.norm(), 1, 0.015f);
+  EXPECT_NEAR(surface_area(mesh), surface_area(shapes::icosphere(5)), 0.2);
+  const auto normals = vertex_normals(mesh);
+  for (VertexId v : mesh.positions.ids()) EXPECT_GT(normals[v].dot(mesh.positions[v]), 0.95f);
+}
+
+TEST(Decimate, vertices_are_evenly_spread) {
+  const auto [mesh, from] = decimate(shapes::icosphere(5), {.target_vertices = 600});
+  const double usual = surface_area(mesh) / static_cast<double>(mesh.faces.size());
+  for (FaceId f : mesh.faces.ids()) {
+    const double area = 0.5 * static_cast<double>(area_vector(mesh, f).norm());
+    EXPECT_GT(area, 0.25 * usual);
+    EXPECT_LT(area, 4 * usual);
+  }
+}
+
+TEST(Decimate, a_flat_sheet_keeps_its_outline) {
+  const auto [mesh, from] = decimate(shapes::sheet(40, 40), {.target_vertices = 60});
+  EXPECT_EQ(mesh.positions.size(), 60u);
+  EXPECT_NEAR(surface_area(mesh), 1, 0.01);
+  for (const Vec3f& p : mesh.positions) EXPECT_NEAR(p.z(), 0, 1e-6f);
+}
+
+TEST(Decimate, a_box_keeps_its_corners) {
+  TriangleMesh box = shapes::box({1, 2, 3});
+  for (int level = 0; level < 4; ++level) {  // each face into four, flat
+    TriangleMesh finer;
+    for (const auto& [a, b, c] : box.faces) {
+      const Vec3f pa = box.positions[a], pb = box.positions[b], pc = box.positions[c];
+      const Vec3f corners[4][3] = {{pa, (pa + pb) / 2, (pa + pc) / 2},
+                                   {pb, (pb + pc) / 2, (pa + pb) / 2},
+                                   {pc, (pa + pc) / 2, (pb + pc) / 2},
+                                   {(pa + pb) / 2, (pb + pc) / 2, (pa + pc) / 2}};
+      for (const auto& t : corners)
+        finer.faces.push_back({finer.positions.push_back(t[0]), finer.positions.push_back(t[1]), finer.positions.push_back(t[2])});
+    }
+    box = clean(finer).mesh;
+  }
+  const auto [mesh, from] = decimate(box, {.target_vertices = 100});
+  EXPECT_NEAR(surface_area(mesh), 22, 0.1);
+  EXPECT_TRUE(bounds(mesh).isApprox(bounds(box), 0.02f));
+}
+
+TEST(Decimate, every_vertex_is_near_the_one_it_was_merged_into) {
+  const TriangleMesh sphere = shapes::icosphere(5);
+  const auto [mesh, from] = decimate(sphere, {.target_vertices = 600});
+  ASSERT_EQ(from.size(), sphere.positions.size());
+  for (VertexId v : sphere.positions.ids()) EXPECT_VEC3_NEAR(sphere.positions[v], mesh.positions[from[v]], 0.35f);
+}
+
+TEST(Decimate, a_mesh_that_is_small_enough_stays_as_it_is) {
+  const TriangleMesh sphere = shapes::icosphere(2);
+  const auto [mesh, from] = decimate(sphere, {.target_vertices = 162});
+  EXPECT_EQ(mesh.positions, sphere.positions);
+  EXPECT_EQ(mesh.faces, sphere.faces);
+  for (VertexId v : from.ids()) EXPECT_EQ(from[v], v);
+}
+
+TEST(Decimate, no_piece_is_lost_or_joined_to_another) {
+  for (const auto& [name, awkward] : test::awkward_meshes()) {
+    SCOPED_TRACE(name);
+    const TriangleMesh before = clean(awkward).mesh;
+    for (std::size_t target : {50, 10, 1}) {
+      const auto [mesh, from] = decimate(before, {.target_vertices = target});
+      validate(mesh);
+      expect_every_vertex_used(mesh);
+      const Components old_parts = connected_components(before), new_parts = connected_components(mesh);
+      EXPECT_EQ(new_parts.count, old_parts.count);
+      std::vector<std::optional<std::uint32_t>> part(old_parts.count);
+      for (VertexId v : before.positions.ids()) {
+        std::optional<std::uint32_t>& becomes = part[old_parts.of[v]];
+        if (!becomes) becomes = new_parts.of[from[v]];
+        EXPECT_EQ(*becomes, new_parts.of[from[v]]);
+      }
+    }
+  }
+}
+
+TEST(Decimate, open_and_non_manifold_meshes_reach_the_target) {
+  for (const TriangleMesh& mesh : {test::moebius_strip(200), test::three_pages(20)}) {
+    const DecimatedMesh reduced = decimate(mesh, {.target_vertices = 60});
+    EXPECT_EQ(reduced.mesh.positions.size(), 60u);
+    EXPECT_NEAR(surface_area(reduced.mesh) / surface_area(mesh), 1, 0.03);
+  }
+}
+
+TEST(Decimate, does_not_depend_on_the_unit) {
+  for (const float scale : {1024.0f, 1.0f / 1024}) {  // exact in floats
+    const TriangleMesh sphere = shapes::icosphere(4);
+    const auto one = decimate(sphere, {.target_vertices = 300});
+    const auto other = decimate(shapes::transformed(sphere, Transform(Eigen::UniformScaling<float>(scale))), {.target_vertices = 300});
+    EXPECT_EQ(one.mesh.faces, other.mesh.faces);
+    for (VertexId v : one.mesh.positions.ids()) EXPECT_EQ(scale * one.mesh.positions[v], other.mesh.positions[v]);
+  }
+}
+
+TEST(Decimate, does_not_depend_on_the_number_of_threads) {
+  const TriangleMesh mesh = clean(shapes::merged(shapes::icosphere(6), test::moved(shapes::capsule(0.2f, 3, 60, 30), {3, 0, 0}))).mesh;
+  const int before = threads();
+  set_threads(1);
+  const auto one = decimate(mesh, {.target_vertices = 500});
+  set_threads(3);
+  const auto three = decimate(mesh, {.target_vertices = 500});
+  set_threads(before);
+  EXPECT_EQ(one.mesh.positions, three.mesh.positions);
+  EXPECT_EQ(one.mesh.faces, three.mesh.faces);
+}
+
+}  // namespace
+}  // namespace osteon::geometry

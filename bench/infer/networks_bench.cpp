@@ -163,9 +163,8 @@ void network(benchmark::State& state, Network which) {
 }
 
 void register_all() {
-  constexpr const char* names[] = {"joints", "attention", "bones", "root", "skin"};
   for (const Network which : test::all_networks)
-    benchmark::RegisterBenchmark(names[static_cast<std::size_t>(which)], network, which)
+    benchmark::RegisterBenchmark(test::name_of({which, 0}).c_str(), network, which)
         ->Arg(1200)
         ->Arg(4000)
         ->Unit(benchmark::kMillisecond)

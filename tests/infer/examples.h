@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <numeric>
 #include <string>
 #include <vector>
@@ -16,6 +18,11 @@ namespace osteon::test {
 
 using nets::rignet::Network;
 inline constexpr Network all_networks[] = {Network::joints, Network::attention, Network::bones, Network::root, Network::skin};
+
+inline std::string name_of(const testing::TestParamInfo<Network>& network) {
+  constexpr const char* names[] = {"joints", "attention", "bones", "root", "skin"};
+  return names[static_cast<std::size_t>(network.param)];
+}
 
 // Weights of about the size that training starts from; normalisations of both signs, means and variances that are not 0 and 1.
 inline Safetensors random_weights(const infer::Shapes& shapes, std::uint64_t seed) {
@@ -40,12 +47,7 @@ inline infer::Parameters random_parameters(Network network, std::uint64_t seed) 
 }
 
 // Vertices in the unit box with 3 to 8 one-ring and 0 to 12 geodesic neighbours each, joints, all pairs of them, skin features.
-struct ExampleInput {
-  nets::MeshArrays mesh;
-  nets::JointArrays joints;
-  nets::PairArrays pairs;
-  std::vector<float> skin_features;
-
+struct ExampleInput : nets::NetworkInputs {
   infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features}; }
 
   void add_mesh(std::size_t vertices, std::size_t joint_count, Random& random) {

@@ -21,9 +21,10 @@ Tensor filled(std::size_t rows, std::size_t columns, Value&& value) {
 Tensor linear(const Tensor& x, const Matrix& weights, std::span<const float> bias) {
   assert(static_cast<std::size_t>(weights.cols()) == x.columns() && static_cast<std::size_t>(weights.rows()) == bias.size());
   return filled(x.rows(), bias.size(), [&](std::size_t r, std::size_t c) {
-    double sum = bias[c];  // so that the reference's own rounding does not count
-    for (std::size_t i = 0; i < x.columns(); ++i)
-      sum += static_cast<double>(x.row(r)[i]) * weights(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i));
+    const float* const in = x.row(r).data();
+    const float* const weight = weights.row(static_cast<Eigen::Index>(c)).data();
+    double sum = bias[c];  // double, so that the reference's own rounding does not count
+    for (std::size_t i = 0; i < x.columns(); ++i) sum += static_cast<double>(in[i]) * weight[i];
     return static_cast<float>(sum);
   });
 }

@@ -9,6 +9,7 @@
 namespace osteon::synth {
 namespace {
 
+constexpr int kReach = 3;         // joints up and down the tree that a vertex may share
 constexpr float kFalloff = 0.5f;  // width of a joint's weight, in radii of its cone: the blend reaches one radius along the bone
 
 Vec3f mirror(const Vec3f& p) { return {-p.x(), p.y(), p.z()}; }
@@ -35,6 +36,14 @@ float round_distance(const Vec3f& p, const Vec3f& a, const Vec3f& b, float ra, f
   if (k <= 0.0f) return ap.norm() - ra;
   if (k >= length) return (p - b).norm() - rb;
   return across * lean + along * slope - ra;
+}
+
+// Whether `below` hangs on `above` within a few joints, or is it.
+bool descends(const Skeleton& skeleton, JointId below, JointId above) {
+  std::optional<JointId> at = below;
+  for (int steps = 0; at && steps <= kReach; ++steps, at = skeleton.parents[*at])
+    if (*at == above) return true;
+  return false;
 }
 
 }  // namespace
@@ -107,7 +116,7 @@ std::vector<Influence> Body::weights(const Vec3f& p) const {
   const auto nearest = static_cast<JointId>(std::min_element(distances.begin(), distances.end()) - distances.begin());
   std::vector<Influence> row;
   for (JointId j : skeleton_.names.ids()) {
-    const bool related = j == nearest || skeleton_.parents[j] == nearest || skeleton_.parents[nearest] == j;
+    const bool related = descends(skeleton_, j, nearest) || descends(skeleton_, nearest, j);
     const float width = std::max(widths_[j], widths_[nearest]);
     if (!related || !(width > 0.0f)) continue;
     const float share = std::max(1.0f - (distances[j] - distances[nearest]) / width, 0.0f);

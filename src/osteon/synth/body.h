@@ -45,9 +45,9 @@ class Body {
   float distance(const Vec3f& p) const;
   Eigen::AlignedBox3f box() const;  // holds the whole surface
 
-  // Exact smooth weights of a point on the surface: the joint whose cone is nearest, shared with its parent and children where theirs are
-  // about as near. A joint's share falls off as (1 - (d - nearest) / width)^2: half and half at the joint between two bones, nothing beyond
-  // about one radius from it. Left and right never share: nothing leaks between legs or fingers.
+  // Exact smooth weights of a point on the surface: the joint whose cone is nearest, shared with those up and down the same limb whose
+  // cones are about as near. A joint's share falls off as (1 - (d - nearest) / width)^2: half and half at the joint between two bones,
+  // nothing beyond about one radius from it. Separate limbs never share: nothing leaks between legs or fingers.
   std::vector<Influence> weights(const Vec3f& p) const;
 
  private:

@@ -13,7 +13,7 @@ struct Proportions {
 
   explicit Proportions(Random& random) {
     size = random.uniform(0.5f, 6.0f);
-    depth = random.uniform(0.8f, 1.7f);
+    depth = random.uniform(0.8f, 1.5f);
     width = random.uniform(0.45f, 0.85f);
     fins = random.uniform(0.7f, 1.5f);
     tail = random.uniform(0.7f, 1.4f);
@@ -22,7 +22,7 @@ struct Proportions {
 };
 
 // Half the height of the body at t = 0 (head) .. 1 (root of the tail).
-float profile(float t) { return 0.016f + 0.05f * std::sqrt(std::sin(3.1f * std::min(0.12f + 0.84f * t, 1.0f))); }
+float profile(float t) { return 0.013f + 0.034f * std::sqrt(std::sin(3.1f * std::min(0.12f + 0.84f * t, 1.0f))); }
 
 class FishMaker {
  public:
@@ -36,7 +36,7 @@ class FishMaker {
   }
 
  private:
-  Vec3f on_axis(float t) const { return {0, 0.12f * p_.depth * s_, (0.1f - 0.27f * t) * s_}; }
+  Vec3f on_axis(float t) const { return {0, 0.12f * p_.depth * s_, (0.12f - 0.36f * t) * s_}; }
   float radius(float t) const { return profile(t) * p_.depth * s_; }
 
   // The root is the head's end of the spine, where a swimming fish turns least; the head looks forward from there.
@@ -48,20 +48,21 @@ class FishMaker {
       points.push_back({i == 0 ? "Root" : "Spine" + std::to_string(i), on_axis(t), radius(t)});
     }
     spine_ = add_chain(body_, std::nullopt, Rows::Single, points, 0.9f, narrow);
-    const JointId head = body_.joint("Head", spine_.front(), on_axis(-0.08f));
-    body_.clothe(head, {{on_axis(-0.08f), on_axis(-0.3f)}, 0.96f * radius(0.0f), 0.024f * p_.depth * s_, Vec3f::UnitX(), p_.width},
+    const JointId head = body_.joint("Head", spine_.front(), on_axis(-0.05f));
+    body_.clothe(head, {{on_axis(-0.05f), on_axis(-0.2f)}, 0.96f * radius(0.0f), 0.02f * p_.depth * s_, Vec3f::UnitX(), p_.width},
                  0.03f * s_);
-    const Vec3f jaw = on_axis(-0.2f) + Vec3f(0, -0.018f * p_.depth * s_, 0), chin = on_axis(-0.36f) + Vec3f(0, -0.016f * p_.depth * s_, 0);
-    add_chain(body_, head, Rows::Single, {{"Jaw", jaw, 0.024f * p_.depth * s_}, {"", chin, 0.011f * p_.depth * s_}}, 0.9f, narrow);
+    const Vec3f jaw = on_axis(-0.13f) + Vec3f(0, -0.016f * p_.depth * s_, 0),
+                chin = on_axis(-0.245f) + Vec3f(0, -0.015f * p_.depth * s_, 0);
+    add_chain(body_, head, Rows::Single, {{"Jaw", jaw, 0.02f * p_.depth * s_}, {"", chin, 0.01f * p_.depth * s_}}, 0.9f, narrow);
   }
 
   void add_tail() {
-    const float span = 0.055f * p_.tail * p_.depth * s_, r = 0.019f * p_.depth * s_;
+    const float span = 0.045f * p_.tail * p_.depth * s_, r = 0.015f * p_.depth * s_;
     const RoundCone thin{{}, 0, 0, Vec3f::UnitX(), 0.4f};
     const auto tail =
-        add_chain(body_, spine_.back(), Rows::Single, {{"Tail", on_axis(1.0f), 1.2f * r}, {"", on_axis(1.12f), r}}, 0.9f, thin);
+        add_chain(body_, spine_.back(), Rows::Single, {{"Tail", on_axis(1.0f), 1.2f * r}, {"", on_axis(1.09f), r}}, 0.9f, thin);
     for (const auto& [name, up] : {std::pair("TailUpper", 1.0f), std::pair("TailLower", -1.0f)}) {
-      const Vec3f base = on_axis(1.1f), tip = on_axis(1.38f) + Vec3f(0, up * span * 1.6f, 0);
+      const Vec3f base = on_axis(1.07f), tip = on_axis(1.28f) + Vec3f(0, up * span * 1.6f, 0);
       add_chain(body_, tail.back(), Rows::Single, {{name, base, r}, {"", tip, 0.6f * r}}, 1.2f, thin);
     }
   }
@@ -78,7 +79,7 @@ class FishMaker {
     const Vec3f side = on_axis(0.08f) + Vec3f(0.8f * p_.width * radius(0.08f), -0.35f * radius(0.08f), 0);
     const Vec3f out = Vec3f(0.045f, -0.022f, -0.035f) * p_.fins * s_;
     add_chain(body_, spine_.front(), Rows::Paired, {{"Fin", side, r}, {"Fin1", side + out, 0.95f * r}, {"", side + 1.8f * out, 0.5f * r}},
-              0.8f, {{}, 0, 0, Vec3f(0.35f, 0.9f, -0.25f).normalized(), 0.3f});
+              0.8f, {{}, 0, 0, Vec3f(0.35f, 0.9f, 0.0f).normalized(), 0.3f});
   }
 
   const Proportions& p_;

@@ -9,8 +9,8 @@
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/manifest.h"
 #include "osteon/dataset/pack.h"
-#include "osteon/io/load.h"
 #include "progress_line.h"
+#include "rigged_file.h"
 
 namespace osteon::app {
 namespace {
@@ -20,12 +20,6 @@ struct PrepareArguments {
   std::string split = "train";
   dataset::PrepareOptions options;
 };
-
-Rig load_rig(const std::filesystem::path& path) {
-  io::Asset asset = io::load(path);
-  if (!asset.skeleton || !asset.weights) throw Error("{}: has no skeleton with skin weights", path.string());
-  return {std::move(asset.mesh), std::move(*asset.skeleton), std::move(*asset.weights)};
-}
 
 // The character, or nothing, with a warning, where the file cannot be used: one bad file does not stop the others.
 std::optional<dataset::PreparedCharacter> try_prepare(const dataset::ManifestEntry& entry, const dataset::PrepareOptions& options) {

@@ -20,7 +20,6 @@ constexpr float kLeastCosine = -0.5f;  // normals that differ by more disagree
 struct Link {
   std::uint32_t from, to;
   float length;
-  auto key() const { return std::tuple(from, to, length); }
 };
 
 std::uint32_t number(VertexId v) { return static_cast<std::uint32_t>(v); }
@@ -94,25 +93,35 @@ class BridgeFinder {
     std::ranges::sort(by_x_, {}, [&](VertexId v) { return std::pair(mesh.positions[v].x(), v); });
   }
 
-  void find(FaceId face, std::vector<Link>& links) const {
+  struct Bridge {
+    VertexId vertex;
+    std::uint32_t part;  // component of the face
+    float distance;      // from the vertex to the face
+    FaceId face;
+    auto key() const { return std::tuple(vertex, part, distance, face); }
+  };
+
+  // From all vertices within reach of the face.
+  void find(FaceId face, std::vector<Bridge>& bridges) const {
     Eigen::AlignedBox3f box;
     for (VertexId corner : mesh_.faces[face]) box.extend(mesh_.positions[corner]);
     box.min().array() -= reach_;
     box.max().array() += reach_;
     const Vec3f normal = area_vector(mesh_, face).stableNormalized();
+    const std::uint32_t part = parts_.of[mesh_.faces[face][0]];
     const auto x = [&](VertexId v) { return mesh_.positions[v].x(); };
-    for (auto v = std::ranges::lower_bound(by_x_, box.min().x(), {}, x); v != by_x_.end() && x(*v) <= box.max().x(); ++v)
-      if (box.contains(mesh_.positions[*v]) && joins(*v, face, normal))
-        for (VertexId corner : mesh_.faces[face]) links.push_back({number(*v), number(corner), distance(mesh_, *v, corner)});
+    for (auto v = std::ranges::lower_bound(by_x_, box.min().x(), {}, x); v != by_x_.end() && x(*v) <= box.max().x(); ++v) {
+      if (parts_.of[*v] == part || !box.contains(mesh_.positions[*v]) || normals_[*v].dot(normal) <= kLeastCosine) continue;
+      if (const float distance = distance_to(face, mesh_.positions[*v]); distance <= reach_) bridges.push_back({*v, part, distance, face});
+    }
   }
 
  private:
-  bool joins(VertexId v, FaceId face, const Vec3f& normal) const {
-    const auto [a, b, c] = mesh_.faces[face];
-    if (parts_.of[v] == parts_.of[a] || normals_[v].dot(normal) <= kLeastCosine) return false;
-    const Vec3f &p = mesh_.positions[v], &pa = mesh_.positions[a], &pb = mesh_.positions[b], &pc = mesh_.positions[c];
-    const Vec3f w = closest_barycentric(p, pa, pb, pc);
-    return (w.x() * pa + w.y() * pb + w.z() * pc - p).norm() <= reach_;
+  float distance_to(FaceId face, const Vec3f& p) const {
+    const auto [ia, ib, ic] = mesh_.faces[face];
+    const Vec3f &a = mesh_.positions[ia], &b = mesh_.positions[ib], &c = mesh_.positions[ic];
+    const Vec3f w = closest_barycentric(p, a, b, c);
+    return (w.x() * a + w.y() * b + w.z() * c - p).norm();
   }
 
   const TriangleMesh& mesh_;
@@ -127,28 +136,40 @@ void add_bridges(const TriangleMesh& mesh, float reach, std::vector<Link>& links
   if (parts.count < 2) return;
   const BridgeFinder finder(mesh, parts, reach);
   constexpr std::size_t kGrain = 64;
-  std::vector<std::vector<Link>> found((mesh.faces.size() + kGrain - 1) / kGrain);
+  std::vector<std::vector<BridgeFinder::Bridge>> found((mesh.faces.size() + kGrain - 1) / kGrain);
   parallel_for(mesh.faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) finder.find(static_cast<FaceId>(f), found[begin / kGrain]);
   });
-  for (const auto& some : found) links.insert(links.end(), some.begin(), some.end());
+  std::vector<BridgeFinder::Bridge> bridges;
+  for (const auto& some : found) bridges.insert(bridges.end(), some.begin(), some.end());
+  std::ranges::sort(bridges, {}, &BridgeFinder::Bridge::key);
+  const auto farther = std::ranges::unique(bridges, {}, [](const auto& b) { return std::pair(b.vertex, b.part); });
+  for (const auto& [vertex, part, length, face] : std::ranges::subrange(bridges.begin(), farther.begin()))
+    for (VertexId corner : mesh.faces[face]) links.push_back({number(vertex), number(corner), distance(mesh, vertex, corner)});
 }
 
 // Both directions of every link, the shortest of those between the same two vertices.
-SurfaceGraph graph_of(std::vector<Link> links, std::size_t vertices) {
-  const std::size_t n = links.size();
-  links.reserve(2 * n);
-  for (std::size_t i = 0; i < n; ++i) links.push_back({links[i].to, links[i].from, links[i].length});
-  std::ranges::sort(links, {}, &Link::key);
-  const auto copies = std::ranges::unique(links, {}, [](const Link& l) { return std::pair(l.from, l.to); });
-  links.erase(copies.begin(), copies.end());
-  SurfaceGraph graph;
-  graph.offsets.assign(vertices + 1, 0);
+SurfaceGraph graph_of(const std::vector<Link>& links, std::size_t vertices) {
+  std::vector<std::uint32_t> ends(vertices + 1, 0);
   for (const Link& l : links) {
-    ++graph.offsets[l.from + 1];
-    graph.edges.push_back({l.to, l.length});
+    ++ends[l.from + 1];
+    ++ends[l.to + 1];
   }
-  for (std::size_t v = 0; v < vertices; ++v) graph.offsets[v + 1] += graph.offsets[v];
+  for (std::size_t v = 0; v < vertices; ++v) ends[v + 1] += ends[v];
+  std::vector<SurfaceGraph::Edge> edges(2 * links.size());
+  std::vector<std::uint32_t> next(ends.begin(), ends.end() - 1);
+  for (const Link& l : links) {
+    edges[next[l.from]++] = {l.to, l.length};
+    edges[next[l.to]++] = {l.from, l.length};
+  }
+  SurfaceGraph graph;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto row = std::span(edges).subspan(ends[v], ends[v + 1] - ends[v]);
+    std::ranges::sort(row, {}, [](const SurfaceGraph::Edge& e) { return std::pair(e.to, e.length); });
+    const auto copies = std::ranges::unique(row, {}, &SurfaceGraph::Edge::to);
+    graph.edges.insert(graph.edges.end(), row.begin(), copies.begin());
+    graph.offsets.push_back(static_cast<std::uint32_t>(graph.edges.size()));
+  }
   return graph;
 }
 
@@ -159,7 +180,7 @@ SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge) {
   links.reserve(3 * mesh.faces.size());
   add_edges(mesh, links);
   add_bridges(mesh, bridge, links);
-  return graph_of(std::move(links), mesh.positions.size());
+  return graph_of(links, mesh.positions.size());
 }
 
 // Dijkstra, "A note on two problems in connexion with graphs", 1959, with a binary heap whose outdated entries are skipped.

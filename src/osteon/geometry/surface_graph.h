@@ -27,8 +27,8 @@ struct SurfaceGraph {
 // - across every edge with two faces, the straight line between the two far corners in the faces unfolded into a plane, where it stays
 //   inside them: paths need not zigzag along edges;
 // - bridges between different components that lie on each other (cloth on a body, hair cards, open seams): from a vertex to the corners of
-//   each face of another component within `bridge` of it, unless the normals disagree (cosine <= -0.5, as in RigNet's sample graph:
-//   the two sides of a thin part, or two limbs that touch). Vertices without faces have no normal and agree with all.
+//   the nearest face of each other component, if within `bridge`. Faces whose normal disagrees with the vertex's do not count (cosine <= -0.5, as
+//   in RigNet's sample graph: the two sides of a thin part, or two limbs that touch). Vertices without faces have no normal and agree with all.
 SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge);
 
 // Smallest start[s] + length of a path from s, over all s, for every vertex; infinity where no path leads from a finite start.

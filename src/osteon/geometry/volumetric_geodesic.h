@@ -12,8 +12,8 @@ namespace osteon::geometry {
 // in RigNet (facts 7.2) of the distance in Dionne and de Lasa, "Geodesic Voxel Binding for Production Character Meshes", 2013:
 // - A vertex that sees the nearest point of the bone through the body gets the Euclidean distance. It sees it if that point is inside the
 // grid
-//   and the line meets the surface only where other parts begin (a shirt over the body, an eye in its socket), before it arrives at the
-//   vertex from within.
+//   and the line passes no voxel Outside and, before it arrives at the vertex from within, leaves at most as many parts as it has entered
+//   (a sleeve that begins inside the body, an eye in its socket).
 // - So do the corners of the faces nearest to the bone, by way of the nearest point: a bone outside the body has these alone.
 // - All other vertices: the shortest way to one of them over surface_graph(mesh).
 // - Where no way leads (a piece that floats): 1 + Euclidean distance, so that every bone within reach comes first.

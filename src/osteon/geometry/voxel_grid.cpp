@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include "osteon/base/parallel.h"
@@ -115,13 +114,17 @@ class View {
     sum_along_axis();
   }
 
-  // 0, 1 or 2: how many of the views from the two ends of the axis see the cell inside.
-  std::uint8_t votes(const Array3i& cell) const {
-    const int here = depth_[offset(cell)];
-    Array3i last = cell;
-    last[axis_] = size_[axis_] - 1;
-    const int beyond = depth_[offset(last)];  // not 0 where the mesh is open
-    return static_cast<std::uint8_t>((here >= 1) + (here - beyond >= 1));
+  // For each cell 0, 1 or 2: how many of the views from the two ends of the axis see its centre inside.
+  std::vector<std::uint8_t> votes() const {
+    std::vector<std::uint8_t> out(depth_.size());
+    const std::size_t stride = static_cast<std::size_t>(strides_[axis_]), run = stride * static_cast<std::size_t>(size_[axis_]);
+    for (std::size_t start = 0; start < depth_.size(); start += run) {
+      const std::int16_t* beyond = &depth_[start + run - stride];  // not 0 where the mesh is open
+      for (std::size_t row = start; row < start + run; row += stride)
+        for (std::size_t i = 0; i < stride; ++i)
+          out[row + i] = static_cast<std::uint8_t>((depth_[row + i] >= 1) + (depth_[row + i] - beyond[i] >= 1));
+    }
+    return out;
   }
 
  private:
@@ -191,47 +194,77 @@ class View {
 
 void vote_interior(const std::vector<Corners>& faces, VoxelGrid& grid) {
   constexpr int kMajority = 4;  // of six
-  std::array<std::optional<View>, 3> views;
-  parallel_for(3, 1, [&](std::size_t begin, std::size_t) { views[begin].emplace(faces, grid, static_cast<int>(begin)); });
-  parallel_for(static_cast<std::size_t>(grid.size.x()), 8, [&](std::size_t begin, std::size_t end) {
-    for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
-      for (int j = 0; j < grid.size.y(); ++j)
-        for (int k = 0; k < grid.size.z(); ++k) {
-          Voxel& voxel = grid.voxels[grid.index({i, j, k})];
-          if (voxel == Voxel::Surface) continue;
-          int votes = 0;
-          for (const auto& view : views) votes += view->votes({i, j, k});
-          if (votes >= kMajority) voxel = Voxel::Interior;
-        }
-  });
+  std::array<std::vector<std::uint8_t>, 3> votes;
+  parallel_for(3, 1, [&](std::size_t begin, std::size_t) { votes[begin] = View(faces, grid, static_cast<int>(begin)).votes(); });
+  for (std::size_t i = 0; i < grid.voxels.size(); ++i)
+    if (votes[0][i] + votes[1][i] + votes[2][i] >= kMajority && grid.voxels[i] != Voxel::Surface) grid.voxels[i] = Voxel::Interior;
 }
+
+// Voxels in a row along z, none of them touched by the surface.
+struct Run {
+  int begin, end;
+};
+
+// Which runs hang together through faces of voxels.
+class RunForest {
+ public:
+  explicit RunForest(const VoxelGrid& grid) : lines_(static_cast<std::size_t>(grid.size.x() * grid.size.y()) + 1) {
+    const int ny = grid.size.y(), nz = grid.size.z();
+    for (int line = 0; line < grid.size.x() * ny; ++line) {
+      add_runs(&grid.voxels[static_cast<std::size_t>(line) * static_cast<std::size_t>(nz)], nz);
+      lines_[static_cast<std::size_t>(line) + 1] = runs_.size();
+      if (line % ny > 0) join_lines(static_cast<std::size_t>(line - 1), static_cast<std::size_t>(line));
+      if (line >= ny) join_lines(static_cast<std::size_t>(line - ny), static_cast<std::size_t>(line));
+    }
+  }
+
+  std::size_t lines() const { return lines_.size() - 1; }
+  // Calls visit(run) for the runs of a line that do not hang together with the first run of all, a corner of the margin.
+  template <class Visit>
+  void sealed_runs(std::size_t line, Visit visit) {
+    for (std::size_t r = lines_[line]; r < lines_[line + 1]; ++r)
+      if (root(r) != 0) visit(runs_[r]);
+  }
+
+ private:
+  void add_runs(const Voxel* line, int length) {
+    for (int k = 0; k < length; ++k) {
+      if (line[k] == Voxel::Surface) continue;
+      const int begin = k;
+      while (k < length && line[k] != Voxel::Surface) ++k;
+      parents_.push_back(runs_.size());
+      runs_.push_back({begin, k});
+    }
+  }
+
+  void join_lines(std::size_t before, std::size_t line) {
+    for (std::size_t a = lines_[before], b = lines_[line]; a < lines_[before + 1] && b < lines_[line + 1];) {
+      if (runs_[a].begin < runs_[b].end && runs_[b].begin < runs_[a].end) join(root(a), root(b));
+      ++(runs_[a].end < runs_[b].end ? a : b);
+    }
+  }
+
+  void join(std::size_t a, std::size_t b) { parents_[std::max(a, b)] = std::min(a, b); }
+
+  std::size_t root(std::size_t run) {
+    while (parents_[run] != run) run = parents_[run] = parents_[parents_[run]];  // path halving
+    return run;
+  }
+
+  std::vector<std::size_t> lines_;  // runs of line l: lines_[l] .. lines_[l + 1]
+  std::vector<Run> runs_;
+  std::vector<std::size_t> parents_;
+};
 
 // Voxels that the outside cannot reach through faces of voxels without touching the surface are inside, whatever the views say
 // (pieces whose faces look inwards, cavities).
 void fill_sealed(VoxelGrid& grid) {
-  const std::size_t sy = static_cast<std::size_t>(grid.size.z()), sx = sy * static_cast<std::size_t>(grid.size.y());
-  const std::size_t nx = static_cast<std::size_t>(grid.size.x()), ny = static_cast<std::size_t>(grid.size.y()), nz = sy;
-  std::vector<std::uint8_t> open(grid.voxels.size(), 0);
-  std::vector<std::size_t> todo{0};  // a corner of the margin
-  open[0] = 1;
-  const auto visit = [&](std::size_t at) {
-    if (open[at] || grid.voxels[at] == Voxel::Surface) return;
-    open[at] = 1;
-    todo.push_back(at);
-  };
-  while (!todo.empty()) {
-    const std::size_t at = todo.back();
-    todo.pop_back();
-    const std::size_t i = at / sx, j = at % sx / sy, k = at % sy;
-    if (i > 0) visit(at - sx);
-    if (i + 1 < nx) visit(at + sx);
-    if (j > 0) visit(at - sy);
-    if (j + 1 < ny) visit(at + sy);
-    if (k > 0) visit(at - 1);
-    if (k + 1 < nz) visit(at + 1);
-  }
-  for (std::size_t at = 0; at < open.size(); ++at)
-    if (!open[at] && grid.voxels[at] == Voxel::Outside) grid.voxels[at] = Voxel::Interior;
+  RunForest runs(grid);
+  for (std::size_t line = 0; line < runs.lines(); ++line)
+    runs.sealed_runs(line, [&](const Run& run) {
+      Voxel* first = &grid.voxels[line * static_cast<std::size_t>(grid.size.z())];
+      std::fill(first + run.begin, first + run.end, Voxel::Interior);
+    });
 }
 
 }  // namespace

@@ -52,11 +52,11 @@ std::uint32_t sortable(float x) {
 }
 
 // Sorts (key, index) pairs by key; equal keys keep their order. Radix sort, least significant digit first.
-void radix_sort(std::vector<std::pair<std::uint64_t, std::uint32_t>>& items) {
+void radix_sort(std::vector<std::pair<std::uint32_t, std::uint32_t>>& items) {
   constexpr int kDigit = 11;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> other(items.size());
-  for (int shift = 0; shift < 64; shift += kDigit) {
-    const auto digit = [&](std::uint64_t key) { return key >> shift & ((1u << kDigit) - 1); };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> other(items.size());
+  for (int shift = 0; shift < 32; shift += kDigit) {
+    const auto digit = [&](std::uint32_t key) { return key >> shift & ((1u << kDigit) - 1); };
     std::vector<std::uint32_t> starts((1u << kDigit) + 1, 0);
     for (const auto& item : items) ++starts[digit(item.first) + 1];
     if (std::find(starts.begin(), starts.end(), items.size()) != starts.end()) continue;  // all digits are equal
@@ -72,29 +72,38 @@ struct Sites {
   std::vector<std::uint32_t> uses;  // vertices at the site
 };
 
-Sites find_sites(const PerVertex<Vec3f>& positions) {
-  const auto& p = positions.raw();
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order(p.size());
-  parallel_for(p.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      order[v] = {std::uint64_t{sortable(p[v].x())} << 32 | sortable(p[v].y()), static_cast<std::uint32_t>(v)};
-  });
+// Vertices sorted by x, y, z: by x first, then the runs of equal x, which are short in most meshes.
+std::vector<std::uint32_t> sorted_by_position(const std::vector<Vec3f>& p) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order(p.size());  // x, vertex
+  for (std::uint32_t v = 0; v < p.size(); ++v) order[v] = {sortable(p[v].x()), v};
   radix_sort(order);
-  const auto z_of = [&](const auto& item) { return sortable(p[item.second].z()); };
+  std::vector<std::pair<std::size_t, std::size_t>> runs;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     while (end < order.size() && order[end].first == order[begin].first) ++end;
-    if (end - begin > 1)
-      std::sort(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end),
-                [&](const auto& a, const auto& b) { return z_of(a) < z_of(b); });
+    if (end - begin > 1) runs.emplace_back(begin, end);
   }
+  const auto yz = [&](const auto& item) { return std::uint64_t{sortable(p[item.second].y())} << 32 | sortable(p[item.second].z()); };
+  parallel_for(runs.size(), 256, [&](std::size_t first, std::size_t last) {
+    for (std::size_t r = first; r < last; ++r)
+      std::sort(order.begin() + static_cast<std::ptrdiff_t>(runs[r].first), order.begin() + static_cast<std::ptrdiff_t>(runs[r].second),
+                [&](const auto& a, const auto& b) { return yz(a) < yz(b); });
+  });
+  std::vector<std::uint32_t> vertices(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) vertices[i] = order[i].second;
+  return vertices;
+}
+
+Sites find_sites(const std::vector<Vec3f>& positions) {
+  const std::vector<std::uint32_t> order = sorted_by_position(positions);
   Sites sites;
-  sites.of.resize(p.size());
+  sites.of.resize(positions.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || order[i].first != order[i - 1].first || z_of(order[i]) != z_of(order[i - 1])) {
-      sites.positions.push_back(p[order[i].second] + Vec3f::Zero());  // -0 becomes 0
+    const Vec3f& p = positions[order[i]];
+    if (i == 0 || p != positions[order[i - 1]]) {    // -0 and 0 compare equal
+      sites.positions.push_back(p + Vec3f::Zero());  // -0 becomes 0
       sites.uses.push_back(0);
     }
-    sites.of[order[i].second] = static_cast<Site>(sites.positions.size() - 1);
+    sites.of[order[i]] = static_cast<Site>(sites.positions.size() - 1);
     ++sites.uses.back();
   }
   return sites;
@@ -288,7 +297,7 @@ std::vector<std::string> describe(std::size_t faces, std::size_t with_area, std:
 }  // namespace
 
 CleanMesh clean(const TriangleMesh& mesh) {
-  const Sites sites = find_sites(mesh.positions);
+  const Sites sites = find_sites(mesh.positions.raw());
   Buckets<SiteFace> faces = sorted_faces(mesh, sites);
   const std::size_t with_area = faces.items.size();
   CleanMesh out;

@@ -21,16 +21,14 @@ struct Edge {
   }
 };
 
+// Knows the edges that are too long and their faces; the others, most of a large mesh, it need not look at.
 class Subdivision {
  public:
-  explicit Subdivision(TriangleMesh& mesh) : mesh_(mesh) {
+  Subdivision(TriangleMesh& mesh, float longest_edge) : mesh_(mesh), squared_limit_(longest_edge * longest_edge) {
     for (FaceId f : mesh.faces.ids()) enter(f);
   }
 
-  bool finished(const SubdivideOptions& options) const {
-    return queue_.empty() || mesh_.positions.size() >= options.most_vertices ||
-           queue_.top().squared_length <= options.longest_edge * options.longest_edge;
-  }
+  bool finished() const { return queue_.empty(); }
 
   void split_longest() {
     const auto [a, b] = queue_.top().ends;
@@ -55,18 +53,21 @@ class Subdivision {
 
   void enter(FaceId f) {
     for (const Ends& e : edges(mesh_.faces[f])) {
+      const float squared_length = (mesh_.positions[e.first] - mesh_.positions[e.second]).squaredNorm();
+      if (squared_length <= squared_limit_) continue;
       const auto [entry, is_new] = faces_.try_emplace(e);
-      if (is_new) queue_.push({(mesh_.positions[e.first] - mesh_.positions[e.second]).squaredNorm(), e});
+      if (is_new) queue_.push({squared_length, e});
       entry->second.push_back(f);
     }
   }
 
   void leave(FaceId f, const Ends& split) {
     for (const Ends& e : edges(mesh_.faces[f]))
-      if (e != split) std::erase(faces_[e], f);
+      if (const auto entry = faces_.find(e); e != split && entry != faces_.end()) std::erase(entry->second, f);
   }
 
   TriangleMesh& mesh_;
+  float squared_limit_;
   std::map<Ends, std::vector<FaceId>> faces_;  // of each edge
   std::priority_queue<Edge> queue_;            // each edge once
 };
@@ -74,8 +75,8 @@ class Subdivision {
 }  // namespace
 
 TriangleMesh subdivide(TriangleMesh mesh, const SubdivideOptions& options) {
-  Subdivision work(mesh);
-  while (!work.finished(options)) work.split_longest();
+  Subdivision work(mesh, options.longest_edge);
+  while (!work.finished() && mesh.positions.size() < options.most_vertices) work.split_longest();
   return mesh;
 }
 

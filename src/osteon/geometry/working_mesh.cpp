@@ -25,28 +25,32 @@ TriangleMesh normalised(TriangleMesh mesh, const Normalization& normalization) {
   return mesh;
 }
 
-// Which components stay: all, or the `most` with the largest areas.
+// Whether each component is among the `most` with the largest areas.
 std::vector<bool> largest_components(const TriangleMesh& mesh, const Components& components, std::size_t most) {
   std::vector<double> areas(components.count, 0);
   for (FaceId f : mesh.faces.ids()) areas[components.of[mesh.faces[f][0]]] += static_cast<double>(area_vector(mesh, f).norm());
   std::vector<std::uint32_t> order(components.count);
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return areas[a] > areas[b]; });
-  std::vector<bool> stays(components.count, false);
-  for (std::size_t i = 0; i < std::min(most, order.size()); ++i) stays[order[i]] = true;
-  return stays;
+  std::vector<bool> largest(components.count, false);
+  for (std::size_t i = 0; i < std::min(most, order.size()); ++i) largest[order[i]] = true;
+  return largest;
 }
 
-// The mesh without the vertices for which there is no place, and the new numbers of the others.
-TriangleMesh kept_part(const TriangleMesh& mesh, const std::vector<bool>& stays, const Components& components,
-                       PerVertex<std::optional<VertexId>>& place) {
-  TriangleMesh out;
-  place.resize(mesh.positions.size());
-  for (VertexId v : mesh.positions.ids())
-    if (stays[components.of[v]]) place[v] = out.positions.push_back(mesh.positions[v]);
-  for (const auto& [a, b, c] : mesh.faces)
-    if (place[a]) out.faces.push_back({*place[a], *place[b], *place[c]});
-  return out;
+// Leaves out all but the `most` largest pieces, fills in where the clean vertices are now, and returns how many pieces there are.
+std::size_t keep_largest_pieces(WorkingMesh& working, std::size_t most) {
+  const Components components = connected_components(working.mesh);
+  working.from_clean = PerVertex<std::optional<VertexId>>(working.mesh.positions.size());
+  for (VertexId v : working.from_clean.ids()) working.from_clean[v] = v;
+  if (components.count <= most) return components.count;
+  const std::vector<bool> stays = largest_components(working.mesh, components, most);
+  TriangleMesh kept;
+  for (VertexId v : working.mesh.positions.ids())
+    working.from_clean[v] = stays[components.of[v]] ? std::optional(kept.positions.push_back(working.mesh.positions[v])) : std::nullopt;
+  for (const auto& [a, b, c] : working.mesh.faces)
+    if (stays[components.of[a]]) kept.faces.push_back({*working.from_clean[a], *working.from_clean[b], *working.from_clean[c]});
+  working.mesh = std::move(kept);
+  return most;
 }
 
 // Even meshes: a body of a few long triangles under a finely modelled head gets vertices before the head loses its own.
@@ -128,10 +132,8 @@ WorkingMesh make_working_mesh(const TriangleMesh& original, const WorkingMeshOpt
   out.normalization = normalization_of(out.clean.mesh);
   out.mesh = normalised(out.clean.mesh, out.normalization);
 
-  const Components components = connected_components(out.mesh);
   const std::size_t most_pieces = 1 + (options.max_vertices - options.target_vertices) / kVerticesPerPiece;
-  out.mesh = kept_part(out.mesh, largest_components(out.mesh, components, most_pieces), components, out.from_clean);
-  const std::size_t pieces = std::min<std::size_t>(components.count, most_pieces);
+  const std::size_t pieces = keep_largest_pieces(out, most_pieces);
   const std::size_t target = options.target_vertices + kVerticesPerPiece * (pieces - 1);
   out.mesh = split_long_edges(std::move(out.mesh), target);
   if (out.mesh.positions.size() > target) {

@@ -19,7 +19,7 @@
 namespace osteon::pipelines {
 namespace {
 
-constexpr std::size_t kGeodesicNeighbours = 15;  // the paper's number
+constexpr std::size_t kGeodesicNeighbours = 10;  // of a vertex, as in training (dataset::BatchOptions)
 constexpr float kReach = 0.2f;                   // a vertex farther than this from all bones is not covered
 
 // Runs the stages one after the other: tells the progress, and notes how long each took.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/geometry/rignet_features.h"
 
+#include <limits>
+
 #include "osteon/mesh/shapes.h"
 #include "support/expect.h"
 
@@ -58,6 +60,22 @@ TEST(SkinInputs, pad_with_the_nearest_bone_and_say_so) {
   EXPECT_EQ(in.features.cols(), 43);
   EXPECT_EQ(in.nearest, (IndexMatrix(1, 5) << 1, 2, 0, -1, -1).finished());
   for (int slot : {3, 4}) EXPECT_EQ(in.features.middleCols(3 + slot * 8, 8), in.features.middleCols(3, 8));
+}
+
+TEST(SkinInputs, leave_out_bones_at_infinity) {
+  Matrix distances(1, 3);
+  distances << 0.3f, std::numeric_limits<float>::infinity(), 0.2f;
+  const SkinInputs in = skin_inputs(std::vector<Vec3f>{{1, 2, 3}}, kBones, kLeaf, distances, 3);
+  EXPECT_EQ(in.nearest, (IndexMatrix(1, 3) << 2, 0, -1).finished());
+}
+
+TEST(OneBonePerJoint, keeps_the_nearest_of_those_that_start_together) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Matrix distances(2, 4);
+  distances << 0.1f, 0.2f, 0.3f, 0.4f,  //
+      0.3f, 0.2f, 0.2f, 0.1f;
+  const Matrix expected = (Matrix(2, 4) << 0.1f, kInfinity, kInfinity, 0.4f, kInfinity, 0.2f, kInfinity, 0.1f).finished();
+  EXPECT_EQ(one_bone_per_joint(distances, std::vector<int>{0, 0, 0, 2}), expected);  // ties: the smaller index
 }
 
 TEST(SkinTargets, give_a_joints_weight_to_the_nearest_of_its_bones_alone) {

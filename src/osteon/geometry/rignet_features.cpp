@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <limits>
 #include <utility>
 
 #include "osteon/base/parallel.h"
@@ -16,12 +17,14 @@ constexpr std::size_t kGrain = 256;
 
 Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-// The first `count` columns of a row in ascending order; ties: the smaller column first.
+// The columns of the smallest values of a row, at most `count`, ascending; ties: the smaller column first. Infinite ones do not count.
 std::vector<int> smallest(const Eigen::Ref<const Eigen::RowVectorXf>& row, int count) {
-  std::vector<int> order(static_cast<std::size_t>(row.size()));
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::partial_sort(order, order.begin() + count, {}, [&](int i) { return std::pair(row[i], i); });
-  order.resize(static_cast<std::size_t>(count));
+  std::vector<int> order;
+  for (int i = 0; i < row.size(); ++i)
+    if (std::isfinite(row[i])) order.push_back(i);
+  const std::size_t kept = std::min(order.size(), static_cast<std::size_t>(count));
+  std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(kept), {}, [&](int i) { return std::pair(row[i], i); });
+  order.resize(kept);
   return order;
 }
 
@@ -45,6 +48,23 @@ Matrix pair_features(std::span<const Vec3f> joints, const VoxelGrid& grid) {
   return out;
 }
 
+Matrix one_bone_per_joint(const Matrix& distances, std::span<const int> starts) {
+  assert(distances.cols() == at(starts.size()));
+  Matrix out = distances;
+  parallel_for(static_cast<std::size_t>(out.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      std::vector<int> nearest(static_cast<std::size_t>(std::ranges::max(starts)) + 1, -1);  // of each joint
+      for (int b = 0; b < out.cols(); ++b) {
+        int& best = nearest[static_cast<std::size_t>(starts[static_cast<std::size_t>(b)])];
+        const bool is_nearer = best < 0 || distances(at(v), b) < distances(at(v), best);
+        if (!is_nearer || best >= 0) out(at(v), is_nearer ? best : b) = std::numeric_limits<float>::infinity();
+        if (is_nearer) best = b;
+      }
+    }
+  });
+  return out;
+}
+
 float proximity(float distance) { return 0.1f / (distance + 0.02f); }
 
 float distance_of_proximity(float proximity) { return 0.1f / proximity - 0.02f; }
@@ -53,13 +73,14 @@ SkinInputs skin_inputs(std::span<const Vec3f> positions, std::span<const Segment
                        const Matrix& distances, int k) {
   assert(!bones.empty() && leaf.size() == bones.size() && k > 0);
   assert(distances.rows() == at(positions.size()) && distances.cols() == at(bones.size()));
-  const int known = std::min(k, static_cast<int>(bones.size()));
   SkinInputs out;
   out.features.resize(at(positions.size()), 3 + k * kBoneFeatures);
   out.nearest.setConstant(at(positions.size()), k, -1);
   parallel_for(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const std::vector<int> order = smallest(distances.row(at(v)), known);
+      const std::vector<int> order = smallest(distances.row(at(v)), k);
+      assert(!order.empty());
+      const int known = static_cast<int>(order.size());
       out.features.row(at(v)).head<3>() = positions[v].transpose();
       for (int slot = 0; slot < k; ++slot) {
         if (slot < known) out.nearest(at(v), slot) = order[static_cast<std::size_t>(slot)];

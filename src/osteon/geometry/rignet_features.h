@@ -20,9 +20,15 @@ constexpr int kBoneFeatures = 8;  // start xyz, end xyz, proximity(D), leaf flag
 
 using IndexMatrix = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// `distances` (V,B) with infinity for all bones but the nearest of those that start at one joint, `starts` (B): the weight of a joint goes
+// to that bone alone (skin_targets), so the others would only take up room among the k. Of 60 characters from as many groups, the 5 nearest
+// bones can carry 96.9 % of the weight and at least nine tenths of it at 93.1 % of the vertices; those of 5 different joints 99.2 and 97.9
+// %. The reference takes the nearest bones of whatever joint.
+Matrix one_bone_per_joint(const Matrix& distances, std::span<const int> starts);
+
 struct SkinInputs {
   Matrix features;      // (V, 3 + 8k): position, then the bones of `nearest`, nearest first
-  IndexMatrix nearest;  // (V,k) bone; -1 where there are fewer than k bones: the features there repeat the nearest bone's
+  IndexMatrix nearest;  // (V,k) bone; -1 where fewer than k are at a finite distance: the features there repeat the nearest bone's
 };
 
 // Bounded stand-in for RigNet's 1 / (D + 1e-10), which reaches 1e10 for a vertex on a bone: 0.1 / (D + 0.02), so 5 on the bone, 1 at D =
@@ -31,7 +37,7 @@ float proximity(float distance);
 float distance_of_proximity(float proximity);  // the way back
 
 // The k nearest bones of each vertex by `distances`, (V,B), from volumetric_geodesic_distance; ties: the smaller index. `leaf` (B) is 1 for
-// the zero-length bones at leaf joints. Pre: B >= 1, positions and rows of `distances` are equally many.
+// the zero-length bones at leaf joints. Pre: positions and rows of `distances` are equally many; each row has a finite distance.
 SkinInputs skin_inputs(std::span<const Vec3f> positions, std::span<const Segment> bones, std::span<const std::uint8_t> leaf,
                        const Matrix& distances, int k = 5);
 

@@ -17,11 +17,6 @@ namespace {
 
 constexpr float kLeastCosine = -0.5f;  // normals that differ by more disagree
 
-struct Link {
-  std::uint32_t from, to;
-  float length;
-};
-
 std::uint32_t number(VertexId v) { return static_cast<std::uint32_t>(v); }
 
 float distance(const TriangleMesh& mesh, VertexId a, VertexId b) { return (mesh.positions[a] - mesh.positions[b]).norm(); }
@@ -148,31 +143,6 @@ void add_bridges(const TriangleMesh& mesh, float reach, std::vector<Link>& links
     for (VertexId corner : mesh.faces[face]) links.push_back({number(vertex), number(corner), distance(mesh, vertex, corner)});
 }
 
-// Both directions of every link, the shortest of those between the same two vertices.
-SurfaceGraph graph_of(const std::vector<Link>& links, std::size_t vertices) {
-  std::vector<std::uint32_t> ends(vertices + 1, 0);
-  for (const Link& l : links) {
-    ++ends[l.from + 1];
-    ++ends[l.to + 1];
-  }
-  for (std::size_t v = 0; v < vertices; ++v) ends[v + 1] += ends[v];
-  std::vector<SurfaceGraph::Edge> edges(2 * links.size());
-  std::vector<std::uint32_t> next(ends.begin(), ends.end() - 1);
-  for (const Link& l : links) {
-    edges[next[l.from]++] = {l.to, l.length};
-    edges[next[l.to]++] = {l.from, l.length};
-  }
-  SurfaceGraph graph;
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const auto row = std::span(edges).subspan(ends[v], ends[v + 1] - ends[v]);
-    std::ranges::sort(row, {}, [](const SurfaceGraph::Edge& e) { return std::pair(e.to, e.length); });
-    const auto copies = std::ranges::unique(row, {}, &SurfaceGraph::Edge::to);
-    graph.edges.insert(graph.edges.end(), row.begin(), copies.begin());
-    graph.offsets.push_back(static_cast<std::uint32_t>(graph.edges.size()));
-  }
-  return graph;
-}
-
 }  // namespace
 
 SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge) {
@@ -180,7 +150,34 @@ SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge) {
   links.reserve(3 * mesh.faces.size());
   add_edges(mesh, links);
   add_bridges(mesh, bridge, links);
-  return graph_of(links, mesh.positions.size());
+  return with_links({std::vector<std::uint32_t>(mesh.positions.size() + 1, 0), {}}, links);
+}
+
+SurfaceGraph with_links(const SurfaceGraph& graph, std::span<const Link> links) {
+  std::vector<std::uint32_t> ends(graph.offsets);
+  std::vector<std::uint32_t> added(graph.size() + 1, 0);
+  for (const Link& l : links) {
+    ++added[l.from + 1];
+    ++added[l.to + 1];
+  }
+  for (std::size_t v = 0; v < graph.size(); ++v) ends[v + 1] += added[v + 1] += added[v];
+  std::vector<SurfaceGraph::Edge> edges(graph.edges.size() + 2 * links.size());
+  std::vector<std::uint32_t> next(ends.begin(), ends.end() - 1);
+  for (std::size_t v = 0; v < graph.size(); ++v)
+    for (const SurfaceGraph::Edge& edge : graph.of(v)) edges[next[v]++] = edge;
+  for (const Link& l : links) {
+    edges[next[l.from]++] = {l.to, l.length};
+    edges[next[l.to]++] = {l.from, l.length};
+  }
+  SurfaceGraph out;
+  for (std::size_t v = 0; v < graph.size(); ++v) {
+    const auto row = std::span(edges).subspan(ends[v], ends[v + 1] - ends[v]);
+    std::ranges::sort(row, {}, [](const SurfaceGraph::Edge& e) { return std::pair(e.to, e.length); });
+    const auto longer = std::ranges::unique(row, {}, &SurfaceGraph::Edge::to);
+    out.edges.insert(out.edges.end(), row.begin(), longer.begin());
+    out.offsets.push_back(static_cast<std::uint32_t>(out.edges.size()));
+  }
+  return out;
 }
 
 // Dijkstra, "A note on two problems in connexion with graphs", 1959, with a binary heap whose outdated entries are skipped.

@@ -31,6 +31,14 @@ struct SurfaceGraph {
 //   in RigNet's sample graph: the two sides of a thin part, or two limbs that touch). Vertices without faces have no normal and agree with all.
 SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge);
 
+struct Link {
+  std::uint32_t from, to;
+  float length;
+};
+
+// The graph with further edges; of several between the same two vertices the shortest stays.
+SurfaceGraph with_links(const SurfaceGraph& graph, std::span<const Link> links);
+
 // Smallest start[s] + length of a path from s, over all s, for every vertex; infinity where no path leads from a finite start.
 // Pre: start has V items, >= 0 or infinite.
 std::vector<float> shortest_paths(const SurfaceGraph& graph, std::vector<float> start);

@@ -6,10 +6,9 @@
 #include <span>
 
 #include "osteon/base/types.h"
+#include "osteon/tensor/row_loops.h"
 
 namespace osteon::tensor {
-
-enum class Activation { none, relu };
 
 // y = x Wᵀ + b and optionally max(0, ·), its weights rearranged once for this processor.
 //

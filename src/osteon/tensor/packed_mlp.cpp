@@ -128,8 +128,7 @@ void PackedMlp::run_rows(const Prepared& input, std::size_t begin, std::size_t e
   for (std::size_t i = 0; i < input.addends.size(); ++i) {
     const bool last = i + 1 == input.addends.size();
     const auto& [product, picked] = input.addends[i];
-    add_gathered(x, first_.outputs(), product.data(), picked.subspan(begin, rows),
-                 last && first_activation_ == Activation::relu ? Rectify::yes : Rectify::no);
+    add_gathered(x, first_.outputs(), product.data(), picked.subspan(begin, rows), last ? first_activation_ : Activation::none);
   }
   for (std::size_t i = 0; i < later_.size(); ++i) {
     float* const y = target(i + 1, later_[i].outputs());

@@ -55,8 +55,9 @@ OSTEON_EVERY_CPU void scale_shift(float* x, std::size_t rows, std::size_t width,
   }
 }
 
-OSTEON_EVERY_CPU void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Rectify rectify) {
-  const float least = rectify == Rectify::yes ? 0.0f : -__builtin_inff();
+OSTEON_EVERY_CPU void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which,
+                                   Activation activation) {
+  const float least = activation == Activation::relu ? 0.0f : -__builtin_inff();
   for (std::size_t r = 0; r < which.size(); ++r) {
     float* __restrict row = x + r * width;
     const float* __restrict more = addend + static_cast<std::size_t>(which[r]) * width;

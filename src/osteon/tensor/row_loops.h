@@ -24,8 +24,8 @@ void sign_shift_relu(float* x, std::size_t rows, std::size_t width, const float*
 // x = scale * x + shift, column by column, for dense rows.
 void scale_shift(float* x, std::size_t rows, std::size_t width, const float* scale, const float* shift);
 
-enum class Rectify { no, yes };
-// x[r] += addend[which[r]], then max(0, ·) if asked; dense rows.
-void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Rectify rectify);
+enum class Activation { none, relu };
+// x[r] += addend[which[r]], then the activation; dense rows.
+void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Activation activation);
 
 }  // namespace osteon::tensor

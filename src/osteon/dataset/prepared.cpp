@@ -16,7 +16,7 @@
 namespace osteon::dataset {
 namespace {
 
-constexpr float kFar = 1e3f;  // distance of the bones that are not among the nearest: beyond every real one
+constexpr float kFar = std::numeric_limits<float>::infinity();  // distance of the bones that are not among the nearest: left out
 
 TriangleMesh normalised(TriangleMesh mesh, const geometry::Normalization& normalization) {
   for (Vec3f& p : mesh.positions) p = normalization.apply(p);
@@ -37,6 +37,12 @@ std::vector<Segment> segments(std::span<const Bone> bones) {
 std::vector<std::uint8_t> leaf_flags(std::span<const Bone> bones) {
   std::vector<std::uint8_t> out;
   for (const Bone& bone : bones) out.push_back(bone.end ? 0 : 1);
+  return out;
+}
+
+std::vector<int> starts(std::span<const Bone> bones) {
+  std::vector<int> out;
+  for (const Bone& bone : bones) out.push_back(static_cast<int>(bone.start));
   return out;
 }
 
@@ -91,7 +97,8 @@ PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptio
   const std::vector<int> parents = parent_indices(out.skeleton);
   out.attention = geometry::attention_labels(out.mesh, joints, parents);
   out.tolerances = PerJoint<float>(geometry::joint_tolerances(out.mesh, joints, parents));
-  keep_nearest(geometry::volumetric_geodesic_distance(out.mesh, out.voxels, segments(all_bones)), options.nearest_bones, out);
+  const Matrix distances = geometry::volumetric_geodesic_distance(out.mesh, out.voxels, segments(all_bones));
+  keep_nearest(geometry::one_bone_per_joint(distances, starts(all_bones)), options.nearest_bones, out);
   note_oddities(rig.skeleton, out);
   return out;
 }
@@ -104,6 +111,7 @@ geometry::SkinInputs skin_inputs(const PreparedCharacter& character, int k) {
   for (Eigen::Index v = 0; v < distances.rows(); ++v)
     for (Eigen::Index n = 0; n < character.nearest_bones.cols(); ++n)
       distances(v, character.nearest_bones(v, n)) = character.nearest_distances(v, n);
+  distances = geometry::one_bone_per_joint(distances, starts(all_bones));
   return geometry::skin_inputs(character.mesh.positions.raw(), segments(all_bones), leaf_flags(all_bones), distances, k);
 }
 
@@ -112,9 +120,7 @@ geometry::SkinTargets skin_targets(const PreparedCharacter& character, const geo
   for (VertexId v : character.mesh.positions.ids())
     for (const Influence& i : character.weights[v])
       joint_weights(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(i.joint)) = i.weight;
-  std::vector<int> starts;
-  for (const Bone& bone : bones(character.skeleton)) starts.push_back(static_cast<int>(bone.start));
-  return geometry::skin_targets(joint_weights, starts, inputs.nearest);
+  return geometry::skin_targets(joint_weights, starts(bones(character.skeleton)), inputs.nearest);
 }
 
 std::vector<std::uint8_t> pair_labels(const Skeleton& skeleton) {

@@ -164,11 +164,14 @@ Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const
   if (joints == 1) return Matrix::Ones(distances.rows(), 1);
   std::vector<Segment> segments;
   std::vector<std::uint8_t> leaf;
+  std::vector<int> starts;
   for (const Bone& b : bones) {
     segments.push_back(b.segment);
     leaf.push_back(b.end ? 0 : 1);
+    starts.push_back(static_cast<int>(b.start));
   }
-  const geometry::SkinInputs inputs = geometry::skin_inputs(body.positions(), segments, leaf, distances);
+  const Matrix choice = geometry::one_bone_per_joint(distances, starts);
+  const geometry::SkinInputs inputs = geometry::skin_inputs(body.positions(), segments, leaf, choice);
   const Matrix weights = models.skin_weights(body.graph, inputs.features, inputs.nearest);
   if (weights.allFinite()) return joint_weights(weights, inputs.nearest, bones, joints);
   warnings.push_back("the skin network gave no numbers: weights fall off with the distance to the bones instead");

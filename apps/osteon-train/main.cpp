@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "rignet_command.h"
+
+namespace {
+
+enum ExitCode { done = 0, failed = 1, bad_input = 2 };
+
+int run(int argc, char** argv) {
+  CLI::App app{"Trains Osteon's networks on characters made ready by `osteon dataset prepare`", "osteon-train"};
+  app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {} (see --help)\n", e.what()); });
+  osteon::app::add_rignet_commands(app);
+  try {
+    app.parse(argc, argv);
+    return done;
+  } catch (const CLI::ParseError& e) {  // also --help, which prints and ends well
+    return app.exit(e) == 0 ? done : bad_input;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const osteon::Error& e) {
+    std::fprintf(stderr, "error: %s\n", e.what());
+    return bad_input;
+  } catch (const std::exception& e) {  // LibTorch's own, such as a GPU without memory left
+    std::fprintf(stderr, "error: %s\n", e.what());
+    return failed;
+  }
+}

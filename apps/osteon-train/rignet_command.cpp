@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rignet_command.h"
+
+#include <ATen/Parallel.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "osteon/base/parallel.h"
+#include "osteon/dataset/pack.h"
+#include "osteon/train/trainer.h"
+#include "training_log.h"
+
+namespace osteon::app {
+namespace {
+
+using nets::rignet::Network;
+using train::Task;
+namespace fs = std::filesystem;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+struct Arguments {
+  fs::path data, validation, out, init, attention, attention_out, log;
+  std::string device = "cpu";
+  int threads = 0;
+  bool resume = false, combined = false, no_augmentation = false;
+  double bandwidth = 0.04;
+  train::TrainOptions options;
+};
+
+void add_common_options(CLI::App& command, Arguments& a) {
+  command.add_option("--data", a.data, "Training characters (safetensors of `osteon dataset prepare`)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command.add_option("--val", a.validation, "Validation characters")->check(CLI::ExistingFile);
+  command.add_option("--out", a.out, "Where the weights go (safetensors)")->required();
+  command.add_option("--init", a.init, "Weights to start from")->check(CLI::ExistingFile);
+  command.add_option("--minutes", a.options.minutes, "Train for this long")->check(CLI::NonNegativeNumber);
+  command.add_option("--steps", a.options.steps, "Train for this many steps")->check(CLI::NonNegativeNumber);
+  command.add_option("--batch", a.options.batch_size, "Characters a step")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--lr", a.options.learning_rate, "Largest learning rate")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--weight-decay", a.options.adam.weight_decay, "Decoupled weight decay")->capture_default_str();
+  command.add_option("--clip", a.options.adam.largest_norm, "Largest norm of the gradient (0: any)")->capture_default_str();
+  command.add_option("--warm-up", a.options.warm_up, "Share of the run in which the learning rate rises")->capture_default_str();
+  command.add_option("--momentum", a.options.task.run.momentum, "Of the normalisations' running figures")->capture_default_str();
+  command.add_option("--neighbours", a.options.task.batch.neighbours, "Geodesic neighbours of a vertex")->capture_default_str();
+  command.add_flag("--no-augmentation", a.no_augmentation, "Show every character as it is");
+  command.add_option("--seed", a.options.seed)->capture_default_str();
+  command.add_option("--device", a.device, "cpu, cuda or cuda:N")->capture_default_str();
+  command.add_option("--threads", a.threads, "CPU threads (default: all cores)")->check(CLI::Range(1, 1024));
+  command.add_option("--checkpoint", a.options.checkpoint, "Written every two minutes, at the end and on Ctrl-C");
+  command.add_flag("--resume", a.resume, "Go on from the checkpoint");
+  command.add_option("--log", a.log, "Figures as JSON lines, appended");
+  command.add_option("--report-seconds", a.options.report_seconds)->capture_default_str();
+  command.add_option("--validate-seconds", a.options.validate_seconds)->capture_default_str();
+}
+
+void add_combined_options(CLI::App& command, Arguments& a) {
+  auto* combined =
+      command.add_flag("--combined", a.combined, "Train displacement, attention and bandwidth together, through the mean shift");
+  command.add_option("--attention", a.attention, "Attention weights to start from")->check(CLI::ExistingFile)->needs(combined);
+  command.add_option("--attention-out", a.attention_out, "Where the attention's weights go")->needs(combined);
+  command.add_option("--bandwidth", a.bandwidth, "Bandwidth to start from")
+      ->check(CLI::PositiveNumber)
+      ->needs(combined)
+      ->capture_default_str();
+  command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")->capture_default_str();
+  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
+}
+
+std::vector<dataset::Example> examples_of(const fs::path& file, Task task) {
+  if (file.empty()) return {};
+  std::vector<dataset::PreparedCharacter> characters = dataset::load_characters(file);
+  if (task == Task::bones || task == Task::root) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
+  if (characters.empty()) throw Error("{}: no characters to learn from", file.string());
+  return dataset::examples_of(std::move(characters));
+}
+
+train::Model starting_model(Task task, const Arguments& a) {
+  train::Model model = train::fresh_model(task, a.options.seed);
+  for (const Network network : {Network::joints, Network::attention, Network::bones, Network::root, Network::skin}) {
+    const bool second = task == Task::collapse && network == Network::attention;
+    const fs::path& file = second ? a.attention : a.init;
+    if (model.parts.contains(train::name_of(network)) && !file.empty()) model[train::name_of(network)] = train::load_weights(file, network);
+  }
+  if (task == Task::collapse) model["bandwidth"].at("h").fill_(a.bandwidth);
+  return model;
+}
+
+// What the weights say about themselves.
+std::map<std::string, std::string> metadata_of(const CLI::App& command, const Arguments& a, const train::TrainResult& result) {
+  std::map<std::string, std::string> metadata = load_safetensors(a.data).metadata;  // sources and licences, from the preparation
+  metadata["recipe"] = command.get_name() + ' ' + command.config_to_str(false, false);
+  metadata["commit"] = OSTEON_COMMIT;
+  metadata["seed"] = std::to_string(a.options.seed);
+  metadata["steps"] = std::to_string(result.steps);
+  metadata["seconds"] = fmt::format("{:.0f}", result.seconds);
+  metadata["validation"] = nlohmann::json(result.validation).dump();
+  return metadata;
+}
+
+void save_weights(const CLI::App& command, const Arguments& a, Task task, train::Model& model, const train::TrainResult& result) {
+  auto metadata = metadata_of(command, a, result);
+  if (task == Task::collapse) metadata["bandwidth"] = fmt::format("{}", model["bandwidth"].at("h").item<float>());
+  for (const Network network : {Network::joints, Network::attention, Network::bones, Network::root, Network::skin}) {
+    const std::string name = train::name_of(network);
+    if (!model.parts.contains(name)) continue;
+    const fs::path& file = task == Task::collapse && network == Network::attention ? a.attention_out : a.out;
+    if (!file.empty()) train::save_weights(file, model[name], metadata);
+  }
+}
+
+void run(const CLI::App& command, Task task, Arguments a) {
+  if (a.threads > 0) {
+    at::set_num_threads(a.threads);
+    set_threads(a.threads);
+  }
+  if (a.combined) task = Task::collapse;
+  if (a.no_augmentation) a.options.augment = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  a.options.task.run.device = at::Device(a.device);
+  a.options.task.run.engine = a.options.task.run.device.is_cpu() ? train::Engine::fused : train::Engine::plain;
+  const auto training = examples_of(a.data, task), validation = examples_of(a.validation, task);
+  train::Trainer trainer(task, a.options, starting_model(task, a));
+  if (a.resume) trainer.resume();
+  std::fprintf(stderr, "%s: %zu characters, %zu for validation, %llu parameters\n", command.get_name().c_str(), training.size(),
+               validation.size(), static_cast<unsigned long long>(train::count_of_trained(trainer.model())));
+  TrainingLog log(a.log);
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  std::signal(SIGTERM, [](int) { interrupted = 1; });
+  const train::TrainResult result = trainer.run(training, validation, std::ref(log), [] { return interrupted != 0; });
+  save_weights(command, a, task, trainer.model(), result);
+}
+
+void add_command(CLI::App& app, Task task, const char* name, const char* description) {
+  auto* command = app.add_subcommand(name, description);
+  auto arguments = std::make_shared<Arguments>();
+  add_common_options(*command, *arguments);
+  if (task == Task::joints) add_combined_options(*command, *arguments);
+  command->callback([command, task, arguments] { run(*command, task, *arguments); });
+}
+
+}  // namespace
+
+void add_rignet_commands(CLI::App& app) {
+  add_command(app, Task::attention, "rignet.attention", "Where on the surface the joints are");
+  add_command(app, Task::joints, "rignet.joints", "How far each vertex is from a joint; --combined: the whole joint stage");
+  add_command(app, Task::bones, "rignet.bones", "Which joints a bone connects");
+  add_command(app, Task::root, "rignet.root", "Which joint is the root");
+  add_command(app, Task::skin, "rignet.skin", "How vertices follow their nearest bones");
+}
+
+}  // namespace osteon::app

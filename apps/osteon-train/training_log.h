@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "osteon/train/trainer.h"
+
+namespace osteon::app {
+
+// Shows how training goes: on stderr (one line that is kept up to date on a terminal, else one line a report) and as JSON lines in a file.
+class TrainingLog {
+ public:
+  // Appends to `file` where it is not empty. Throws Error when that cannot be opened.
+  explicit TrainingLog(const std::filesystem::path& file);
+
+  void operator()(const train::TrainReport& report);
+
+ private:
+  std::ofstream file_;
+  bool terminal_;
+};
+
+}  // namespace osteon::app

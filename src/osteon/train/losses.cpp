@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/train/losses.h"
+
+#include <torch/types.h>
+
+#include <algorithm>
+
+namespace osteon::train {
+namespace {
+
+// Distances of rows of a and b; the square root's slope stays finite where they coincide.
+at::Tensor distances(const at::Tensor& a, const at::Tensor& b) { return ((a - b).square().sum(1) + 1e-12).sqrt(); }
+
+at::Tensor pair_cross_entropy(const at::Tensor& logits, const at::Tensor& targets) {
+  return at::binary_cross_entropy_with_logits(logits.squeeze(1), targets, {}, {}, at::Reduction::None);
+}
+
+}  // namespace
+
+at::Tensor attention_loss(const at::Tensor& logits, const at::Tensor& targets) { return pair_cross_entropy(logits, targets).mean(); }
+
+at::Tensor chamfer(const at::Tensor& points, const at::Tensor& joints) {
+  at::Tensor nearest_joint, nearest_point;
+  {
+    const at::NoGradGuard no_grad;
+    const at::Tensor squared = (points.unsqueeze(1) - joints.unsqueeze(0)).square().sum(2);
+    nearest_joint = squared.argmin(1);
+    nearest_point = squared.argmin(0);
+  }
+  return 0.5 * (distances(points, joints.index_select(0, nearest_joint)).mean() +
+                distances(points.index_select(0, nearest_point), joints).mean());
+}
+
+at::Tensor trail_loss(const std::vector<at::Tensor>& trail, const at::Tensor& joints) {
+  at::Tensor sum = at::zeros({}, joints.options());
+  for (const at::Tensor& points : trail) sum = sum + chamfer(points, joints);
+  return sum / static_cast<double>(trail.size());
+}
+
+at::Tensor bone_loss(const at::Tensor& logits, const at::Tensor& targets) {
+  const at::Tensor each = pair_cross_entropy(logits, targets);
+  const std::int64_t hardest = std::max<std::int64_t>(1, each.size(0) * 3 / 10);
+  return each.mean() + std::get<0>(each.topk(hardest)).mean();
+}
+
+at::Tensor root_loss(const at::Tensor& logits, const std::vector<std::int32_t>& offsets, const std::vector<std::int32_t>& roots) {
+  at::Tensor sum = at::zeros({}, logits.options());
+  for (std::size_t m = 0; m < roots.size(); ++m) {
+    const at::Tensor of_mesh = logits.squeeze(1).narrow(0, offsets[m], offsets[m + 1] - offsets[m]);
+    sum = sum - at::log_softmax(of_mesh, 0)[roots[m] - offsets[m]];
+  }
+  return sum / static_cast<double>(roots.size());
+}
+
+at::Tensor skin_loss(const at::Tensor& logits, const at::Tensor& weights, const at::Tensor& share) {
+  const at::Tensor each = -(weights * at::log_softmax(logits, 1)).sum(1);
+  return (each * share).sum() / (share.sum() + 1e-8);
+}
+
+}  // namespace osteon::train

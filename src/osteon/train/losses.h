@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ATen/ATen.h>
+
+#include <vector>
+
+// What the networks are trained to make small (facts/rignet of the paper's sections 4.1 to 4.3); each a scalar, differentiable.
+namespace osteon::train {
+
+// Mean binary cross-entropy of logits (N,1) against targets (N), 0 or 1.
+at::Tensor attention_loss(const at::Tensor& logits, const at::Tensor& targets);
+
+// Half the mean distance from a point to the nearest joint plus half that from a joint to the nearest point; plain Euclidean.
+// points (N,3), joints (J,3). The paper's equation 10 has no factor 1/2.
+at::Tensor chamfer(const at::Tensor& points, const at::Tensor& joints);
+
+// The trail of a mean shift against the joints: mean of chamfer() over its steps (the released code; the paper takes the last one).
+at::Tensor trail_loss(const std::vector<at::Tensor>& trail, const at::Tensor& joints);
+
+// Mean binary cross-entropy over all pairs plus the mean of the highest 30 %: most pairs are easy. logits (P,1), targets (P).
+at::Tensor bone_loss(const at::Tensor& logits, const at::Tensor& targets);
+
+// Mean over meshes of -log softmax at the root joint (the paper's). logits (J,1); the joints of mesh m are rows offsets[m] ..
+// offsets[m+1]-1; roots[m] is the row of its root.
+at::Tensor root_loss(const at::Tensor& logits, const std::vector<std::int32_t>& offsets, const std::vector<std::int32_t>& roots);
+
+// Mean cross-entropy of softmax(logits), (V,5), against weights whose rows sum to 1, each vertex counting with its share (V), the part of
+// its weight that the five bones can carry. Differs: the reference drops vertices whose share is not exactly 1, 7 % by rounding alone.
+at::Tensor skin_loss(const at::Tensor& logits, const at::Tensor& weights, const at::Tensor& share);
+
+}  // namespace osteon::train

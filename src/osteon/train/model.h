@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "osteon/base/safetensors.h"
+#include "osteon/nets/dry_run.h"
+#include "osteon/train/parameters.h"
+
+namespace osteon::train {
+
+// What is trained together, in one map: each parameter's name is "<network>/<path>", such as "joints/gcu1.ring.0.linear.weight".
+struct Model {
+  std::map<std::string, Parameters> parts;  // by network: joints, attention, bones, root, skin; and "bandwidth", with one value "h"
+
+  Parameters& operator[](const std::string& part) { return parts[part]; }
+};
+
+// joints, attention, bones, root or skin.
+const char* name_of(nets::rignet::Network network);
+std::uint64_t count_of_trained(const Model& model);
+
+Array to_array(const at::Tensor& values);   // f32
+at::Tensor from_array(const Array& array);  // f32 or f16 -> f32
+
+// Weights as the program uses them: matrices in f16, the rest (biases, normalisations) in f32.
+void save_weights(const std::filesystem::path& path, const Parameters& parameters, const std::map<std::string, std::string>& metadata);
+
+// Throws Error that lists every name and shape in which the file and the network differ.
+Parameters load_weights(const std::filesystem::path& path, nets::rignet::Network network);
+
+}  // namespace osteon::train

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/train/networks.h"
+
+#include "osteon/nets/rignet.h"
+#include "osteon/train/fused_ops.h"
+#include "osteon/train/torch_ops.h"
+
+namespace osteon::train {
+namespace {
+
+using nets::rignet::Network;
+
+static_assert(nets::Ops<TorchOps> && nets::Ops<FusedOps>);
+
+template <nets::Ops B>
+at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
+  const nets::MeshGraph<B> mesh = nets::on_backend(b, inputs.mesh);
+  switch (network) {
+    case Network::joints:
+      return nets::rignet::joint_net(b, mesh);
+    case Network::attention:
+      return nets::rignet::mask_net(b, mesh);
+    case Network::bones:
+      return nets::rignet::bone_net(b, mesh, nets::on_backend(b, inputs.joints), nets::on_backend(b, inputs.pairs));
+    case Network::root:
+      return nets::rignet::root_net(b, mesh, nets::on_backend(b, inputs.joints));
+    case Network::skin:
+      return nets::rignet::skin_net(b, mesh, b.tensor(inputs.skin_features, inputs.mesh.batch.rows(), nets::rignet::skin_inputs));
+  }
+  throw Error("unknown network");
+}
+
+}  // namespace
+
+at::Tensor run_network(Network network, Parameters& parameters, const NetworkInputs& inputs, const RunOptions& options) {
+  if (options.engine == Engine::fused) {
+    FusedOps ops(parameters, options.mode, options.momentum);
+    return run(ops, network, inputs);
+  }
+  TorchOps ops(parameters, options.mode, options.device, options.momentum);
+  return run(ops, network, inputs);
+}
+
+}  // namespace osteon::train

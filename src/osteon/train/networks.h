@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ATen/ATen.h>
+
+#include "osteon/nets/dry_run.h"
+#include "osteon/nets/graph.h"
+#include "osteon/train/parameters.h"
+
+// RigNet's networks on LibTorch. The templates are instantiated in networks.cpp alone, as torch's headers take long to compile.
+namespace osteon::train {
+
+enum class Mode { training, use };   // normalise with the figures of the batch, and keep the running ones up to date; or with these
+enum class Engine { plain, fused };  // LibTorch operations on any device; or hand-written layers for the CPU: the same function
+
+using nets::NetworkInputs;
+
+struct RunOptions {
+  Mode mode = Mode::use;
+  Engine engine = Engine::fused;
+  at::Device device = at::kCPU;
+  double momentum = 0.1;  // of the running figures, in training
+};
+
+// The network's output, see nets/rignet.h.
+at::Tensor run_network(nets::rignet::Network network, Parameters& parameters, const NetworkInputs& inputs, const RunOptions& options);
+
+}  // namespace osteon::train

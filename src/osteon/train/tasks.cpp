@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/train/tasks.h"
+
+#include <torch/types.h>
+
+#include "osteon/base/error.h"
+#include "osteon/train/losses.h"
+#include "osteon/train/mean_shift.h"
+
+namespace osteon::train {
+namespace {
+
+using at::Tensor;
+using nets::rignet::Network;
+using Figures = std::map<std::string, double>;
+
+Network network_of(Task task) {
+  switch (task) {
+    case Task::attention:
+      return Network::attention;
+    case Task::joints:
+    case Task::collapse:
+      return Network::joints;
+    case Task::bones:
+      return Network::bones;
+    case Task::root:
+      return Network::root;
+    case Task::skin:
+      return Network::skin;
+  }
+  throw Error("unknown task");
+}
+
+Tensor tensor_of(const std::vector<float>& values, std::int64_t columns, at::Device device) {
+  const auto rows = static_cast<std::int64_t>(values.size()) / columns;
+  Tensor out = torch::from_blob(const_cast<float*>(values.data()), {rows, columns}).clone().to(device);
+  return columns == 1 ? out.squeeze(1) : out;
+}
+
+Tensor run(Network network, Model& model, const dataset::Batch& batch, const RunOptions& options) {
+  return run_network(network, model[name_of(network)], batch.inputs, options);
+}
+
+Tensor rows_of_mesh(const Tensor& x, const nets::BatchArrays& batch, std::size_t mesh) {
+  return x.narrow(0, batch.offsets[mesh], batch.offsets[mesh + 1] - batch.offsets[mesh]);
+}
+
+// Positions moved by the displacement network.
+struct Candidates {
+  Tensor points;  // (V,3)
+  Tensor joints;  // (J,3) reference
+};
+
+Candidates candidates(Model& model, const dataset::Batch& batch, const RunOptions& options) {
+  const Tensor displacement = run(Network::joints, model, batch, options);
+  return {tensor_of(batch.inputs.mesh.positions, 3, options.device) + displacement,
+          tensor_of(batch.inputs.joints.positions, 3, options.device)};
+}
+
+Tensor displacement_loss(const Candidates& all, const dataset::Batch& batch) {
+  const std::size_t meshes = batch.targets.root.size();
+  Tensor sum = at::zeros({}, all.points.options());
+  for (std::size_t m = 0; m < meshes; ++m)
+    sum = sum + chamfer(rows_of_mesh(all.points, batch.inputs.mesh.batch, m), rows_of_mesh(all.joints, batch.inputs.joints.batch, m));
+  return sum / static_cast<double>(meshes);
+}
+
+Tensor collapse_loss(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(model, batch, options.run);
+  const Tensor logits = run(Network::attention, model, batch, options.run);
+  const Tensor attention = logits.sigmoid();
+  const std::size_t meshes = batch.targets.root.size();
+  Tensor loss = displacement_loss(all, batch);
+  for (std::size_t m = 0; m < meshes; ++m) {
+    const auto trail = mean_shift(rows_of_mesh(all.points, batch.inputs.mesh.batch, m), rows_of_mesh(attention, batch.inputs.mesh.batch, m),
+                                  model["bandwidth"].at("h"), options.mean_shift_steps);
+    const Tensor collapsed = trail_loss(trail, rows_of_mesh(all.joints, batch.inputs.joints.batch, m));
+    loss = loss + collapsed * (options.collapse_weight / static_cast<double>(meshes));
+  }
+  return loss + options.attention_weight * attention_loss(logits, tensor_of(batch.targets.attention, 1, options.run.device));
+}
+
+double share(const Tensor& yes, const Tensor& of) { return yes.sum().item<double>() / std::max(1.0, of.sum().item<double>()); }
+
+Figures attention_figures(const Tensor& logits, const Tensor& targets) {
+  const Tensor found = (logits.squeeze(1) > 0.0).to(at::kFloat), right = found * targets;
+  return {{"loss", attention_loss(logits, targets).item<double>()},
+          {"f1", 2.0 * right.sum().item<double>() / std::max(1.0, (found.sum() + targets.sum()).item<double>())}};
+}
+
+// Mean distances both ways; their mean is the loss.
+Figures distance_figures(const Tensor& points, const Tensor& joints) {
+  const Tensor distance = (points.unsqueeze(1) - joints.unsqueeze(0)).square().sum(2).sqrt();
+  const double to_joints = std::get<0>(distance.min(1)).mean().item<double>(),
+               to_points = std::get<0>(distance.min(0)).mean().item<double>();
+  return {{"loss", 0.5 * (to_joints + to_points)}, {"to_joints", to_joints}, {"to_points", to_points}};
+}
+
+Figures collapse_figures(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(model, batch, options.run);
+  const Tensor attention = run(Network::attention, model, batch, options.run).sigmoid();
+  const Tensor points = mean_shift(all.points, attention, model["bandwidth"].at("h"), options.mean_shift_steps).back();
+  const Tensor sure = (attention.squeeze(1) > 0.1 * attention.max()).nonzero().squeeze(1);
+  return distance_figures(points.index_select(0, sure), all.joints);
+}
+
+// The batch holds all pairs in one order and then in the other: the mean of both probabilities decides.
+Figures bone_figures(const Tensor& logits, const Tensor& targets) {
+  const std::int64_t pairs = targets.size(0) / 2;
+  const Tensor probability = logits.sigmoid().squeeze(1);
+  const Tensor found = ((probability.narrow(0, 0, pairs) + probability.narrow(0, pairs, pairs)) > 1.0).to(at::kFloat);
+  const Tensor wanted = targets.narrow(0, 0, pairs), right = found * wanted;
+  return {{"loss", bone_loss(logits, targets).item<double>()},
+          {"accuracy", (found == wanted).to(at::kFloat).mean().item<double>()},
+          {"precision", share(right, found)},
+          {"recall", share(right, wanted)}};
+}
+
+Figures root_figures(const Tensor& logits, const dataset::Batch& batch) {
+  const double right = logits.squeeze(1).argmax().item<std::int64_t>() == batch.targets.root[0] ? 1.0 : 0.0;
+  return {{"loss", root_loss(logits, batch.inputs.joints.batch.offsets, batch.targets.root).item<double>()}, {"accuracy", right}};
+}
+
+// The reference's weight on other bones than the five is lost whatever the network says: it counts in full.
+Figures skin_figures(const Tensor& logits, const Tensor& weights, const Tensor& covered) {
+  const Tensor difference = (logits.softmax(1) - weights * covered.unsqueeze(1)).abs().sum(1) + (1.0 - covered);
+  return {{"loss", skin_loss(logits, weights, covered).item<double>()}, {"l1", difference.mean().item<double>()}};
+}
+
+Figures figures_of(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const at::Device device = options.run.device;
+  if (task == Task::collapse) return collapse_figures(model, batch, options);
+  if (task == Task::joints) {
+    const Candidates all = candidates(model, batch, options.run);
+    return distance_figures(all.points, all.joints);
+  }
+  const Tensor out = run(network_of(task), model, batch, options.run);
+  if (task == Task::attention) return attention_figures(out, tensor_of(batch.targets.attention, 1, device));
+  if (task == Task::bones) return bone_figures(out, tensor_of(batch.targets.connected, 1, device));
+  if (task == Task::root) return root_figures(out, batch);
+  return skin_figures(out, tensor_of(batch.targets.skin, nets::rignet::skin_bones, device), tensor_of(batch.targets.skin_share, 1, device));
+}
+
+bool has_targets(Task task, const dataset::Example& example) {
+  return (task != Task::bones && task != Task::root) || example.character.joints() > 1;
+}
+
+}  // namespace
+
+dataset::Parts parts_of(Task task) {
+  if (task == Task::bones) return dataset::Parts::pairs;
+  return task == Task::skin ? dataset::Parts::skin : dataset::Parts::joints;
+}
+
+Model fresh_model(Task task, std::uint64_t seed) {
+  Model model;
+  const auto add = [&](Network network) { model[name_of(network)] = initial_parameters(nets::rignet::parameter_shapes(network), seed); };
+  add(network_of(task));
+  if (task == Task::collapse) {
+    add(Network::attention);
+    model["bandwidth"]["h"] = at::full({1}, 0.04, at::kFloat);
+  }
+  if (network_of(task) == Network::joints)
+    for (const char* name : {"out.weight", "out.bias"}) model["joints"].at(name).zero_();
+  return model;
+}
+
+at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const at::Device device = options.run.device;
+  if (task == Task::collapse) return collapse_loss(model, batch, options);
+  if (task == Task::joints) return displacement_loss(candidates(model, batch, options.run), batch);
+  const Tensor out = run(network_of(task), model, batch, options.run);
+  if (task == Task::attention) return attention_loss(out, tensor_of(batch.targets.attention, 1, device));
+  if (task == Task::bones) return bone_loss(out, tensor_of(batch.targets.connected, 1, device));
+  if (task == Task::root) return root_loss(out, batch.inputs.joints.batch.offsets, batch.targets.root);
+  return skin_loss(out, tensor_of(batch.targets.skin, nets::rignet::skin_bones, device), tensor_of(batch.targets.skin_share, 1, device));
+}
+
+std::map<std::string, double> validate(Task task, Model& model, std::span<const dataset::Example> examples, const TaskOptions& options) {
+  const at::NoGradGuard no_grad;
+  TaskOptions use = options;
+  use.run.mode = Mode::use;
+  Figures sum;
+  double count = 0.0;
+  for (const dataset::Example& example : examples) {
+    if (!has_targets(task, example)) continue;
+    const dataset::Example* one = &example;
+    for (const auto& [name, value] : figures_of(task, model, dataset::plain_batch({&one, 1}, options.batch), use)) sum[name] += value;
+    count += 1.0;
+  }
+  for (auto& [name, value] : sum) value /= count;
+  return sum;
+}
+
+}  // namespace osteon::train

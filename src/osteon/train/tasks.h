@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include "osteon/dataset/batch.h"
+#include "osteon/train/model.h"
+#include "osteon/train/networks.h"
+
+// What each network is trained to do, and how well it does it.
+namespace osteon::train {
+
+enum class Task {
+  attention,  // rignet.attention
+  joints,     // rignet.joints: displacement alone, by chamfer(vertex + displacement, joints)
+  collapse,   // rignet.joints --combined: displacement, attention and bandwidth together, through the mean shift
+  bones,
+  root,
+  skin,
+};
+
+struct TaskOptions {
+  RunOptions run;
+  dataset::BatchOptions batch;
+  int mean_shift_steps = 15;
+  double collapse_weight = 2.0;   // of the trail against chamfer(q, joints): the released code's
+  double attention_weight = 0.1;  // of the attention's own cross-entropy in the combined loss: the code's option
+};
+
+// What the task reads of a character.
+dataset::Parts parts_of(Task task);
+
+// A fresh model with the parts that the task trains; the displacement starts at zero, as in the released code.
+Model fresh_model(Task task, std::uint64_t seed);
+
+at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options);
+
+// Named figures, each a mean over the characters; "loss" is what to choose by (smaller is better).
+//   attention   loss, f1 (of label 1 at probability 0.5)
+//   joints      loss, to_joints (mean over vertices of the distance to the nearest joint), to_points
+//   collapse    the same of the shifted points that have attention above 0.1 of the mesh's largest
+//   bones       loss, accuracy, precision and recall of the pairs with probability over 0.5 (mean of both orders)
+//   root        loss, accuracy
+//   skin        loss, l1 (mean over vertices of the summed differences to the reference weights)
+std::map<std::string, double> validate(Task task, Model& model, std::span<const dataset::Example> examples, const TaskOptions& options);
+
+}  // namespace osteon::train

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <torch/autograd.h>
+#include <torch/types.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <span>
+
+#include "osteon/base/error.h"
+#include "osteon/nets/ops.h"
+#include "osteon/train/networks.h"
+#include "osteon/train/norm.h"
+
+namespace osteon::train {
+
+// nets::Ops by plain LibTorch operations, on any device: the reference for FusedOps, and what runs on a GPU.
+class TorchOps {
+ public:
+  using Tensor = torch::Tensor;
+  using Index = torch::Tensor;  // 32-bit
+
+  TorchOps(Parameters& parameters, Mode mode, torch::Device device, double momentum = 0.1)
+      : parameters_(parameters), mode_(mode), device_(device), momentum_(momentum) {}
+
+  Tensor tensor(std::span<const float> values, int rows, int columns) const {
+    return torch::from_blob(const_cast<float*>(values.data()), {rows, columns}, torch::kFloat).clone().to(device_);
+  }
+  Index index(std::span<const std::int32_t> numbers) const {
+    return torch::from_blob(const_cast<std::int32_t*>(numbers.data()), {static_cast<std::int64_t>(numbers.size())}, torch::kInt)
+        .clone()
+        .to(device_);
+  }
+  Tensor linear(const nets::Path& path, const Tensor& x, int) { return torch::linear(x, at(path / "weight"), at(path / "bias")); }
+  Tensor batch_norm(const nets::Path& path, const Tensor& x) {
+    return torch::batch_norm(x, at(path / "weight"), at(path / "bias"), at(path / "running_mean"), at(path / "running_var"),
+                             mode_ == Mode::training, momentum_, norm_epsilon, true);
+  }
+  Tensor relu(const Tensor& x) { return torch::relu(x); }
+  Tensor subtract(const Tensor& x, const Tensor& y) { return x - y; }
+  Tensor concat(std::initializer_list<Tensor> all) { return torch::cat(std::vector<Tensor>(all), 1); }
+  Tensor rows(const Tensor& x, const Index& index) { return torch::index_select(x, 0, index); }
+  Tensor max_by(const Tensor& x, const Index& offsets) {
+    const std::int64_t segments = offsets.size(0) - 1;
+    const Tensor counts = offsets.narrow(0, 1, segments) - offsets.narrow(0, 0, segments);
+    const Tensor segment = torch::repeat_interleave(counts.to(torch::kLong)).unsqueeze(1).expand_as(x);
+    return torch::zeros({segments, x.size(1)}, x.options()).scatter_reduce(0, segment, x, "amax", false);
+  }
+
+ protected:
+  const Tensor& at(const nets::Path& path) const {
+    const auto found = parameters_.find(path.name());
+    if (found == parameters_.end()) throw Error("the network has no parameter '{}' among {} given", path.name(), parameters_.size());
+    return found->second;
+  }
+
+  Parameters& parameters_;
+  Mode mode_;
+  torch::Device device_;
+  double momentum_;
+};
+
+}  // namespace osteon::train

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/train/trainer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "osteon/base/error.h"
+
+namespace osteon::train {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::string task_name(Task task) {
+  switch (task) {
+    case Task::attention:
+      return "attention";
+    case Task::joints:
+      return "joints";
+    case Task::collapse:
+      return "collapse";
+    case Task::bones:
+      return "bones";
+    case Task::root:
+      return "root";
+    case Task::skin:
+      return "skin";
+  }
+  return "";
+}
+
+// Means of what is added since the last take().
+class Averages {
+ public:
+  void add(const std::map<std::string, double>& figures) {
+    for (const auto& [name, value] : figures) sum_[name] += value;
+    ++count_;
+  }
+  std::map<std::string, double> take() {
+    for (auto& [name, value] : sum_) value /= count_;
+    count_ = 0;
+    return std::exchange(sum_, {});
+  }
+
+ private:
+  std::map<std::string, double> sum_;
+  int count_ = 0;
+};
+
+// Says yes once in `period` seconds, first after one period.
+class Timer {
+ public:
+  explicit Timer(double period) : period_(period), last_(Clock::now()) {}
+  bool due() {
+    if (seconds_since(last_) < period_) return false;
+    last_ = Clock::now();
+    return true;
+  }
+
+ private:
+  double period_;
+  Clock::time_point last_;
+};
+
+}  // namespace
+
+Trainer::Trainer(Task task, const TrainOptions& options, Model model)
+    : task_(task), options_(options), model_(std::move(model)), adam_(options.adam) {
+  options_.task.run.mode = Mode::training;
+  options_.task.batch.parts = parts_of(task);
+  if (options_.steps <= 0 && options_.minutes <= 0.0) throw Error("training needs an end: a number of steps or of minutes");
+  for (auto& [part, parameters] : model_.parts) prepare_for_training(parameters, options_.task.run.device);
+}
+
+double Trainer::progress() const {
+  double done = 0.0;
+  if (options_.steps > 0) done = static_cast<double>(step_) / static_cast<double>(options_.steps);
+  if (options_.minutes > 0.0) done = std::max(done, seconds_ / (60.0 * options_.minutes));
+  return std::min(done, 1.0);
+}
+
+double Trainer::learning_rate() const {
+  const double t = progress();
+  if (t < options_.warm_up) return options_.learning_rate * std::max(t / options_.warm_up, 0.02);
+  return options_.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * (t - options_.warm_up) / (1.0 - options_.warm_up)));
+}
+
+std::map<std::string, double> Trainer::step(const std::vector<dataset::Example>& train, const std::vector<double>& weights) {
+  const auto start = Clock::now();
+  Random random = Random(options_.seed).fork(static_cast<std::uint64_t>(step_));
+  std::vector<const dataset::Example*> drawn;
+  for (const std::size_t i : dataset::draw(weights, options_.batch_size, random)) drawn.push_back(&train[i]);
+  const dataset::Batch batch = dataset::training_batch(drawn, options_.task.batch, options_.augment, random);
+  const at::Tensor loss = training_loss(task_, model_, batch, options_.task);
+  loss.backward();
+  const double rate = learning_rate();
+  const double norm = adam_.step(model_, rate);
+  ++step_;
+  const double seconds = seconds_since(start);
+  seconds_ += seconds;
+  std::map<std::string, double> figures{
+      {"loss", loss.item<double>()}, {"gradient_norm", norm}, {"learning_rate", rate}, {"seconds_per_step", seconds}};
+  if (model_.parts.contains("bandwidth")) figures["bandwidth"] = model_["bandwidth"].at("h").item<double>();
+  return figures;
+}
+
+TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::vector<dataset::Example>& validation,
+                         const std::function<void(const TrainReport&)>& report, const std::function<bool()>& stop) {
+  const std::vector<double> weights = dataset::sampling_weights(train);
+  const auto validated = [&] {
+    auto figures = validate(task_, model_, validation, options_.task);
+    report({step_, seconds_, progress(), true, figures});
+    return figures;
+  };
+  Averages averages;
+  Timer report_timer(options_.report_seconds), validation_timer(options_.validate_seconds), checkpoint_timer(options_.checkpoint_seconds);
+  bool stopped = false;
+  while (progress() < 1.0 && !(stopped = stop())) {
+    averages.add(step(train, weights));
+    if (report_timer.due() || progress() >= 1.0) report({step_, seconds_, progress(), false, averages.take()});
+    if (checkpoint_timer.due()) save();
+    if (progress() < 1.0 && validation_timer.due()) validated();
+  }
+  save();
+  if (stopped) return {Ending::stopped, step_, seconds_, {}};
+  return {Ending::complete, step_, seconds_, validated()};
+}
+
+void Trainer::save() const {
+  if (options_.checkpoint.empty()) return;
+  Safetensors file;
+  file.metadata = {{"task", task_name(task_)}, {"step", std::to_string(step_)}, {"seconds", fmt::format("{}", seconds_)}};
+  for (const auto& [part, parameters] : model_.parts)
+    for (const auto& [name, value] : parameters) file.arrays[part + '/' + name] = to_array(value);
+  adam_.save(file);
+  save_safetensors(options_.checkpoint, file);
+}
+
+void Trainer::resume() {
+  const Safetensors file = load_safetensors(options_.checkpoint);
+  const auto task = file.metadata.find("task");
+  if (task == file.metadata.end() || task->second != task_name(task_))
+    throw Error("{}: task: found {}, expected {}", options_.checkpoint.string(), task == file.metadata.end() ? "none" : task->second,
+                task_name(task_));
+  step_ = std::stoll(file.metadata.at("step"));
+  seconds_ = std::stod(file.metadata.at("seconds"));
+  const at::NoGradGuard no_grad;
+  for (auto& [part, parameters] : model_.parts)
+    for (auto& [name, value] : parameters) value.copy_(from_array(file.at(part + '/' + name)));
+  adam_.load(file, options_.task.run.device);
+}
+
+}  // namespace osteon::train

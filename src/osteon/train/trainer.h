@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteon/train/adam.h"
+#include "osteon/train/tasks.h"
+
+namespace osteon::train {
+
+struct TrainOptions {
+  TaskOptions task;
+  AdamOptions adam;
+  dataset::AugmentOptions augment;
+  std::size_t batch_size = 2;   // characters a step
+  double learning_rate = 1e-3;  // the largest: it rises over the warm-up and then falls to zero along a cosine
+  double warm_up = 0.03;        // share of the run
+  std::int64_t steps = 0;       // the run ends after these ...
+  double minutes = 0.0;         // ... or after this time, whichever is given (0: not)
+  std::uint64_t seed = 1;
+  double report_seconds = 15.0;
+  double validate_seconds = 300.0;  // how often to look at the validation characters; at the end always
+  double checkpoint_seconds = 120.0;
+  std::filesystem::path checkpoint;  // empty: none are written
+};
+
+// What happened since the last report: mean figures of training, or figures of a validation.
+struct TrainReport {
+  std::int64_t step;
+  double seconds;   // of training, over all resumed runs
+  double progress;  // 0..1
+  bool is_validation;
+  std::map<std::string, double> figures;  // training: loss, gradient_norm, learning_rate, seconds_per_step
+};
+
+enum class Ending { complete, stopped };
+
+struct TrainResult {
+  Ending ending;
+  std::int64_t steps;
+  double seconds;
+  std::map<std::string, double> validation;  // empty where it was stopped
+};
+
+// The state of a run. A batch depends on the seed and the number of the step alone, so a run that is stopped and resumed goes on exactly
+// as if it had not been stopped (where the schedule goes by steps; by minutes it depends on the speed).
+class Trainer {
+ public:
+  Trainer(Task task, const TrainOptions& options, Model model);
+
+  // Continues from options.checkpoint. Throws Error when it is of another task.
+  void resume();
+
+  // Trains until the end, or until `stop` says so; writes a checkpoint then. Pre: `train` is not empty.
+  TrainResult run(const std::vector<dataset::Example>& train, const std::vector<dataset::Example>& validation,
+                  const std::function<void(const TrainReport&)>& report, const std::function<bool()>& stop);
+
+  Model& model() { return model_; }
+  std::int64_t steps() const { return step_; }
+
+ private:
+  double progress() const;
+  double learning_rate() const;
+  std::map<std::string, double> step(const std::vector<dataset::Example>& train, const std::vector<double>& weights);
+  void save() const;
+
+  Task task_;
+  TrainOptions options_;
+  Model model_;
+  Adam adam_;
+  std::int64_t step_ = 0;
+  double seconds_ = 0.0;
+};
+
+}  // namespace osteon::train

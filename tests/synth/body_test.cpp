@@ -82,6 +82,14 @@ TEST_F(ArmedBody, is_symmetric) {
   }
 }
 
+TEST_F(ArmedBody, is_the_same_near_a_point_without_the_far_parts) {
+  Random random(3);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3f centre = random_point(random), p = centre + 0.05f * random_point(random);
+    EXPECT_EQ(body.near(centre, 0.1f)(p), body.distance(p));
+  }
+}
+
 TEST_F(ArmedBody, binds_the_middle_of_a_bone_to_it_alone_and_the_joint_to_both_alike) {
   EXPECT_EQ(weight(Vec3f(0.45f, 0.57f, 0), arm), 1.0f);
   EXPECT_NEAR(weight(Vec3f(0.7f, 0.56f, 0), arm), 0.5f, 0.02f);  // the arm's cone narrows: its side leans a little

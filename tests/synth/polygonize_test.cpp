@@ -9,9 +9,15 @@
 namespace osteon::synth {
 namespace {
 
+LocalField everywhere(Field field) {
+  return [field](const Vec3f&, float) { return field; };
+}
+
 float ball(const Vec3f& p) { return p.norm() - 1.0f; }
 
-TriangleMesh unit_ball(float cell) { return polygonize(ball, Eigen::AlignedBox3f(Vec3f::Constant(-1), Vec3f::Constant(1)), cell); }
+TriangleMesh unit_ball(float cell) {
+  return polygonize(everywhere(ball), Eigen::AlignedBox3f(Vec3f::Constant(-1), Vec3f::Constant(1)), cell);
+}
 
 // Directed edges that are not met by exactly one edge the other way.
 std::size_t open_edges(const TriangleMesh& mesh) {
@@ -47,7 +53,7 @@ TEST(Polygonize, closes_the_surface_of_one_ball_and_faces_outwards) {
 
 TEST(Polygonize, has_the_genus_of_a_torus) {
   const auto torus = [](const Vec3f& p) { return Eigen::Vector2f(Eigen::Vector2f(p.x(), p.z()).norm() - 1.0f, p.y()).norm() - 0.3f; };
-  const TriangleMesh mesh = polygonize(torus, Eigen::AlignedBox3f(Vec3f::Constant(-1.3f), Vec3f::Constant(1.3f)), 0.07f);
+  const TriangleMesh mesh = polygonize(everywhere(torus), Eigen::AlignedBox3f(Vec3f::Constant(-1.3f), Vec3f::Constant(1.3f)), 0.07f);
   EXPECT_EQ(open_edges(mesh), 0u);
   const auto euler = static_cast<long>(mesh.positions.size()) - static_cast<long>(mesh.faces.size()) / 2;  // V - E + F, E = 3F/2
   EXPECT_EQ(euler, 0);

@@ -79,14 +79,41 @@ void Body::clothe(JointId joint, const RoundCone& cone, float blend) {
   widths_[joint] = widths_[twins_[joint]] = std::max(widths_[joint], width);
 }
 
-float Body::distance(const Vec3f& p) const {
+std::vector<Body::SidedPart> Body::all_parts() const {
+  std::vector<SidedPart> all;
+  for (const Part& part : parts_) {
+    all.push_back({&part, false});
+    if (twins_[part.joint] != part.joint) all.push_back({&part, true});
+  }
+  return all;
+}
+
+float Body::blended(const std::vector<SidedPart>& parts, const Vec3f& p) {
   const Vec3f near_side(std::abs(p.x()), p.y(), p.z()), far_side = mirror(near_side);
   float d = std::numeric_limits<float>::max();
-  for (const Part& part : parts_) {
-    d = smooth_min(d, signed_distance(part.cone, near_side), part.blend);
-    if (twins_[part.joint] != part.joint) d = smooth_min(d, signed_distance(part.cone, far_side), part.blend);
-  }
+  for (const SidedPart& s : parts) d = smooth_min(d, signed_distance(s.part->cone, s.far ? far_side : near_side), s.part->blend);
   return d;
+}
+
+float Body::distance(const Vec3f& p) const { return blended(all_parts(), p); }
+
+// Two parts melt where their distances differ by less than the blend, so one that is further than the nearest by the largest blend, at
+// every point of the ball, changes nothing: distances change by at most `radius` within it.
+Field Body::near(const Vec3f& centre, float radius) const {
+  const Vec3f near_side(std::abs(centre.x()), centre.y(), centre.z()), far_side = mirror(near_side);
+  std::vector<SidedPart> parts = all_parts();
+  std::vector<float> distances;
+  float nearest = std::numeric_limits<float>::max(), largest_blend = 0.0f;
+  for (const SidedPart& s : parts) {
+    distances.push_back(signed_distance(s.part->cone, s.far ? far_side : near_side));
+    nearest = std::min(nearest, distances.back());
+    largest_blend = std::max(largest_blend, s.part->blend);
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (distances[i] <= nearest + 2.0f * radius + largest_blend) parts[kept++] = parts[i];
+  parts.resize(kept);
+  return [parts = std::move(parts)](const Vec3f& p) { return blended(parts, p); };
 }
 
 Eigen::AlignedBox3f Body::box() const {

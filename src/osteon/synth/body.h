@@ -8,6 +8,7 @@
 #include "osteon/base/types.h"
 #include "osteon/rig/skeleton.h"
 #include "osteon/rig/skin_weights.h"
+#include "osteon/synth/polygonize.h"
 
 namespace osteon::synth {
 
@@ -43,6 +44,8 @@ class Body {
 
   // Negative inside; never above the distance to the surface in value, so that empty space can be skipped. f(x,y,z) = f(-x,y,z).
   float distance(const Vec3f& p) const;
+  // The same for points within `radius` of `centre`, from the parts that matter there. Refers to this body.
+  Field near(const Vec3f& centre, float radius) const;
   Eigen::AlignedBox3f box() const;  // holds the whole surface
 
   // Exact smooth weights of a point on the surface: the joint whose cone is nearest, shared with those up and down the same limb whose
@@ -56,6 +59,12 @@ class Body {
     RoundCone cone;
     float blend;
   };
+  struct SidedPart {
+    const Part* part;
+    bool far;  // the twin on the other side than the point
+  };
+  std::vector<SidedPart> all_parts() const;
+  static float blended(const std::vector<SidedPart>& parts, const Vec3f& p);
   PerJoint<float> joint_distances(const Vec3f& p) const;
 
   Skeleton skeleton_;

@@ -59,7 +59,8 @@ Rig make_character(Kind kind, std::uint64_t seed, const CharacterOptions& option
   const Body body = info(kind).make(random);
   const Eigen::AlignedBox3f box = body.box();
   Rig rig;
-  rig.mesh = polygonize([&](const Vec3f& p) { return body.distance(p); }, box, box.sizes().maxCoeff() / static_cast<float>(options.cells));
+  rig.mesh = polygonize([&](const Vec3f& centre, float radius) { return body.near(centre, radius); }, box,
+                        box.sizes().maxCoeff() / static_cast<float>(options.cells));
   rig.skeleton = body.skeleton();
   rig.weights = weights_of(rig.mesh, body);
   stand_on_ground(rig);

@@ -40,7 +40,7 @@ class ManyLeggedMaker {
   }
 
  private:
-  float height() const { return 0.05f * p_.stance * s_; }
+  float height() const { return 0.055f * p_.stance * s_; }
 
   void add_trunk() {
     const RoundCone low{{}, 0, 0, Vec3f::UnitY(), 0.75f};
@@ -50,7 +50,7 @@ class ManyLeggedMaker {
     head_ = add_chain(body_, thorax_, Rows::Single,
                       {{"Head", {0, y, front + 0.018f * s_}, 0.021f * b_}, {"", {0, y - 0.004f * s_, front + 0.032f * s_}, 0.018f * b_}},
                       0.6f)[0];
-    const float belly = 0.038f * p_.abdomen * b_;
+    const float belly = 0.027f * p_.abdomen * b_;
     add_chain(body_, thorax_, Rows::Single,
               {{"Abdomen", {0, y + 0.004f * s_, back - 0.024f * s_}, 0.02f * b_},
                {"Abdomen1", {0, y + 0.014f * s_, back - 0.02f * s_ - 0.9f * belly}, belly},

@@ -22,10 +22,17 @@ constexpr int kBlock = 8;            // empty space is skipped in blocks of 8^3 
 constexpr int kProjectionSteps = 3;  // Newton steps that set a vertex on the surface
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
+template <class Visit>
+void for_each_cell(const Cell& low, const Cell& high, Visit&& visit) {
+  for (int i = low.x(); i < high.x(); ++i)
+    for (int j = low.y(); j < high.y(); ++j)
+      for (int k = low.z(); k < high.z(); ++k) visit(Cell(i, j, k));
+}
+
 // Values of the function at the nodes of a grid; far nodes hold only the right sign. Node (i,j,k) is at origin + cell * (i,j,k).
 class Samples {
  public:
-  Samples(const std::function<float(const Vec3f&)>& distance, const Eigen::AlignedBox3f& box, float cell) : cell_(cell) {
+  Samples(const LocalField& field, const Eigen::AlignedBox3f& box, float cell) : cell_(cell) {
     // Node columns at x = 0, +-cell, +-2 cell, ... make the grid its own mirror image.
     const Vec3f low = (box.min() / cell).array().floor() - 1.0f, high = (box.max() / cell).array().ceil() + 1.0f;
     const float half = std::max(-low.x(), high.x());
@@ -36,7 +43,7 @@ class Samples {
     parallel_for(static_cast<std::size_t>(blocks.prod()), 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const int i = static_cast<int>(b);
-        fill_block(distance, kBlock * Cell(i / (blocks.y() * blocks.z()), i / blocks.z() % blocks.y(), i % blocks.z()));
+        fill_block(field, kBlock * Cell(i / (blocks.y() * blocks.z()), i / blocks.z() % blocks.y(), i % blocks.z()));
       }
     });
   }
@@ -51,13 +58,14 @@ class Samples {
   }
 
  private:
-  void fill_block(const std::function<float(const Vec3f&)>& distance, const Cell& low) {
+  void fill_block(const LocalField& field, const Cell& low) {
     const Cell high = (low + kBlock).min(size_);
-    const float middle = distance(position(low) + Vec3f::Constant(0.5f * cell_ * (kBlock - 1)));
-    const bool far = std::abs(middle) > 0.5f * std::sqrt(3.0f) * cell_ * (kBlock + 2);
-    for (int i = low.x(); i < high.x(); ++i)
-      for (int j = low.y(); j < high.y(); ++j)
-        for (int k = low.z(); k < high.z(); ++k) values_[index({i, j, k})] = far ? middle : distance(position({i, j, k}));
+    const float radius = 0.5f * std::sqrt(3.0f) * cell_ * (kBlock + 2);  // beyond the neighbouring nodes
+    const Vec3f centre = position(low) + Vec3f::Constant(0.5f * cell_ * (kBlock - 1));
+    const Field here = field(centre, radius);
+    const float middle = here(centre);
+    const bool far = std::abs(middle) > radius;
+    for_each_cell(low, high, [&](const Cell& node) { values_[index(node)] = far ? middle : here(position(node)); });
   }
 
   float cell_;
@@ -91,14 +99,15 @@ std::optional<Vec3f> mean_crossing(const Samples& samples, const Cell& cell) {
   return sum / static_cast<float>(cuts);
 }
 
-Vec3f gradient(const std::function<float(const Vec3f&)>& distance, const Vec3f& p, float step) {
+Vec3f gradient(const Field& distance, const Vec3f& p, float step) {
   Vec3f g;
   for (int axis = 0; axis < 3; ++axis) g[axis] = distance(p + step * Vec3f::Unit(axis)) - distance(p - step * Vec3f::Unit(axis));
   return g / (2.0f * step);
 }
 
 // Newton steps along the gradient, never further than half a cell in all.
-Vec3f on_surface(const std::function<float(const Vec3f&)>& distance, const Vec3f& start, float cell) {
+Vec3f on_surface(const LocalField& field, const Vec3f& start, float cell) {
+  const Field distance = field(start, cell);
   Vec3f p = start;
   for (int i = 0; i < kProjectionSteps; ++i) {
     const Vec3f g = gradient(distance, p, 0.05f * cell);
@@ -140,17 +149,10 @@ void add_faces_at(const Samples& samples, const std::vector<std::uint32_t>& vert
     add_quad(mesh, d, c, b, a);
 }
 
-template <class Body>
-void for_each_cell(const Cell& low, const Cell& high, Body&& body) {
-  for (int i = low.x(); i < high.x(); ++i)
-    for (int j = low.y(); j < high.y(); ++j)
-      for (int k = low.z(); k < high.z(); ++k) body(Cell(i, j, k));
-}
-
 }  // namespace
 
-TriangleMesh polygonize(const std::function<float(const Vec3f&)>& distance, const Eigen::AlignedBox3f& box, float cell) {
-  const Samples samples(distance, box, cell);
+TriangleMesh polygonize(const LocalField& field, const Eigen::AlignedBox3f& box, float cell) {
+  const Samples samples(field, box, cell);
   TriangleMesh mesh;
   std::vector<std::uint32_t> vertex_of(static_cast<std::size_t>(samples.size().prod()), kNoVertex);
   for_each_cell(Cell::Zero(), samples.size() - 1, [&](const Cell& at) {
@@ -158,7 +160,7 @@ TriangleMesh polygonize(const std::function<float(const Vec3f&)>& distance, cons
       vertex_of[samples.index(at)] = static_cast<std::uint32_t>(mesh.positions.push_back(*crossing));
   });
   parallel_for(mesh.positions.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (VertexId v : ids<VertexId>(end) | std::views::drop(begin)) mesh.positions[v] = on_surface(distance, mesh.positions[v], cell);
+    for (VertexId v : ids<VertexId>(end) | std::views::drop(begin)) mesh.positions[v] = on_surface(field, mesh.positions[v], cell);
   });
   for_each_cell(Cell::Ones(), samples.size() - 1, [&](const Cell& node) {
     for (int axis = 0; axis < 3; ++axis) add_faces_at(samples, vertex_of, node, axis, mesh);

@@ -15,9 +15,9 @@
 namespace osteon::geometry {
 namespace {
 
-constexpr std::size_t kFewSamples = 96, kManySamples = 384;  // of the surface: to choose among candidates, and to refine and judge the best
-constexpr std::size_t kFinalists = 3;
-constexpr int kFirstSteps = 6, kLastSteps = 8;
+constexpr std::size_t kFewSamples = 64, kManySamples = 320;  // of the surface: to choose among candidates, and to refine and judge the best
+constexpr std::size_t kFinalists = 2;
+constexpr int kFirstSteps = 4, kLastSteps = 5;
 constexpr float kOutlier = 3.0f;          // times the median distance: hair, weapons, ... do not tilt the plane
 constexpr float kAlike = 0.6f;            // principal moments with a larger ratio leave the direction open
 constexpr float kNearEqualFactor = 1.5f;  // scores up to this times the best, plus ...

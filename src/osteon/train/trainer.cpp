@@ -89,12 +89,29 @@ double Trainer::learning_rate() const {
   return options_.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * (t - options_.warm_up) / (1.0 - options_.warm_up)));
 }
 
-std::map<std::string, double> Trainer::step(const std::vector<dataset::Example>& train, const std::vector<double>& weights) {
-  const auto start = Clock::now();
-  Random random = Random(options_.seed).fork(static_cast<std::uint64_t>(step_));
+dataset::Batch Trainer::batch_of(const std::vector<dataset::Example>& train, const std::vector<double>& weights,
+                                 std::uint64_t number) const {
+  Random random = Random(options_.seed).fork(number);
   std::vector<const dataset::Example*> drawn;
   for (const std::size_t i : dataset::draw(weights, options_.batch_size, random)) drawn.push_back(&train[i]);
-  const dataset::Batch batch = dataset::training_batch(drawn, options_.task.batch, options_.augment, random);
+  return dataset::training_batch(drawn, options_.task.batch, options_.augment, random);
+}
+
+// Running figures lag behind the weights and, with batches of two meshes, are mostly those of the last twenty. The plain mean over fresh
+// batches with the weights as they are now is what use needs. Training itself does not read them.
+void Trainer::settle(const std::vector<dataset::Example>& train, const std::vector<double>& weights) {
+  constexpr std::uint64_t first = std::uint64_t{1} << 40;  // batches that no step sees
+  const at::NoGradGuard no_grad;
+  TaskOptions options = options_.task;
+  for (int i = 0; i < options_.settling_batches; ++i) {
+    options.run.momentum = 1.0 / (i + 1);
+    training_loss(task_, model_, batch_of(train, weights, first + static_cast<std::uint64_t>(i)), options);
+  }
+}
+
+std::map<std::string, double> Trainer::step(const std::vector<dataset::Example>& train, const std::vector<double>& weights) {
+  const auto start = Clock::now();
+  const dataset::Batch batch = batch_of(train, weights, static_cast<std::uint64_t>(step_));
   const at::Tensor loss = training_loss(task_, model_, batch, options_.task);
   loss.backward();
   const double rate = learning_rate();
@@ -112,6 +129,7 @@ TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::
                          const std::function<void(const TrainReport&)>& report, const std::function<bool()>& stop) {
   const std::vector<double> weights = dataset::sampling_weights(train);
   const auto validated = [&] {
+    settle(train, weights);
     auto figures = validate(task_, model_, validation, options_.task);
     report({step_, seconds_, progress(), true, figures});
     return figures;
@@ -125,9 +143,13 @@ TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::
     if (checkpoint_timer.due()) save();
     if (progress() < 1.0 && validation_timer.due()) validated();
   }
+  TrainResult result{stopped ? Ending::stopped : Ending::complete, step_, seconds_, {}};
+  if (stopped)
+    settle(train, weights);  // the weights so far can be used too
+  else
+    result.validation = validated();
   save();
-  if (stopped) return {Ending::stopped, step_, seconds_, {}};
-  return {Ending::complete, step_, seconds_, validated()};
+  return result;
 }
 
 void Trainer::save() const {

@@ -13,6 +13,9 @@ namespace osteon::app {
 
 void add_rig_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_synth_command(CLI::App& app);
+void add_dataset_command(CLI::App& app);
+void add_evaluate_command(CLI::App& app);
 
 // The work was done, but the result is not good enough to be used: exit code 3.
 class Refused : public Error {

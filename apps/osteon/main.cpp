@@ -35,6 +35,9 @@ void add_common_options(CLI::App& app) {
 void add_commands(CLI::App& app) {
   osteon::app::add_rig_command(app);
   osteon::app::add_render_command(app);
+  osteon::app::add_synth_command(app);
+  osteon::app::add_dataset_command(app);
+  osteon::app::add_evaluate_command(app);
 }
 
 int run(int argc, char** argv) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blender, headless: the file is one skinned mesh, stands as stored, and moves when a bone is turned.
+// Blender, headless: the file is one skinned mesh, stands in its bind pose, and moves when a bone is turned.
 import {spawnSync} from 'node:child_process';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';

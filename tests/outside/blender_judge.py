@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Run by Blender: blender --background --factory-startup --python blender_judge.py -- FILE...
-# Prints one line `VERDICT {json}` for each file: empty if it loads as one skinned mesh that stands as stored and moves when a joint is turned.
+# Prints one line `VERDICT {json}` for each file: empty if it loads as one skinned mesh that stands in its bind pose and moves when a joint is turned.
 import json
-import struct
 import sys
 
 import bpy
@@ -40,16 +39,12 @@ def heaviest_bone(mesh, armature):
     return max(others, key=lambda b: by_name.get(b.name, 0.0))
 
 
-# Lowest and highest corner of the positions that the file stores, in Blender's axes.
-def stored_bounds(path):
-    with open(path, 'rb') as f:
-        length = struct.unpack('<5I', f.read(20))[3]
-        gltf = json.loads(f.read(length))
-    skinned_meshes = {node['mesh'] for node in gltf['nodes'] if 'skin' in node and 'mesh' in node}
-    accessors = [gltf['accessors'][p['attributes']['POSITION']] for m in skinned_meshes for p in gltf['meshes'][m]['primitives']]
-    low = [min(a['min'][i] for a in accessors) for i in range(3)]
-    high = [max(a['max'][i] for a in accessors) for i in range(3)]
-    return Vector((low[0], -high[2], low[1])), Vector((high[0], -low[2], high[1]))
+# Where the vertices stand when the armature is in its rest pose, whatever pose the file's joints are in.
+def rest_vertices(mesh, armature):
+    armature.data.pose_position = 'REST'
+    rest = posed_vertices(mesh)
+    armature.data.pose_position = 'POSE'
+    return rest
 
 
 def judge(path):
@@ -63,13 +58,11 @@ def judge(path):
     if len(armatures) != 1:
         return f'{len(armatures)} armatures instead of one'
     mesh, armature = meshes[0], armatures[0]
-    rest = posed_vertices(mesh)
-    low, high = stored_bounds(path)
-    size = (high - low).length
-    found_low, found_high = (Vector([f(v[i] for v in rest) for i in range(3)]) for f in (min, max))
-    drift = max((found_low - low).length, (found_high - high).length)
-    if not drift <= 1e-3 * size:
-        return f'the rest pose is not the mesh: {drift} of {size}'
+    rest, posed = rest_vertices(mesh, armature), posed_vertices(mesh)
+    size = max((v - rest[0]).length for v in rest)
+    drift = largest_move(rest, posed)
+    if not drift <= 1e-4 * size:
+        return f'the joints do not stand in their bind pose: {drift} of {size}'
     bone = heaviest_bone(mesh, armature)
     bone.rotation_mode = 'QUATERNION'
     bone.rotation_quaternion = bone.rotation_quaternion @ Quaternion(Vector((1, 1, 1)).normalized(), 0.8)

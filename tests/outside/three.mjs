@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// three.js in Chromium: the file is one skinned mesh, stands as stored, and moves when a joint is turned.
+// three.js in Chromium: the file is one skinned mesh, stands in its bind pose, and moves when a joint is turned.
 import {readFileSync, mkdtempSync, rmSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {tmpdir} from 'node:os';

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/program.h"
+
+#include "osteon/io/save.h"
+#include "osteon/mesh/shapes.h"
+
+namespace osteon {
+namespace {
+
+using test::osteon;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+TEST(Program, says_its_version) {
+  const test::TemporaryFolder folder;
+  const auto run = osteon(folder, "--version");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.out, StartsWith("osteon "));
+}
+
+TEST(Program, wrong_options_end_with_2_and_one_line) {
+  const test::TemporaryFolder folder;
+  for (const char* arguments : {"", "dance", "rig", "render a.obj", "render a.obj -o a.png --size 0 0", "rig a.obj -o a.glb --detail 7",
+                                "rig a.obj -o a.glb --joints 5 --detail 1", "--threads 0 rig a.obj -o a.glb"}) {
+    const auto run = osteon(folder, arguments);
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_THAT(run.err, StartsWith("error: ")) << arguments;
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << arguments;
+  }
+}
+
+TEST(Program, bad_files_end_with_2_and_are_named) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "empty.obj");
+  std::ofstream(folder / "garbage.glb") << "glTF but not really";
+  for (const char* name : {"missing.obj", "empty.obj", "garbage.glb"}) {
+    const auto run = osteon(folder, fmt::format("render {} -o a.png", name));
+    EXPECT_EQ(run.code, 2) << name;
+    EXPECT_THAT(run.err, AllOf(StartsWith("error: "), HasSubstr(name)));
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+  }
+}
+
+TEST(Program, draws_a_mesh_without_a_rig) {
+  const test::TemporaryFolder folder;
+  io::save_obj(folder / "ball.obj", shapes::icosphere(2));
+  const auto run = osteon(folder, "render ball.obj -o ball.png --size 200 100");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(test::content(folder / "ball.png"), StartsWith("\x89PNG"));
+}
+
+TEST(Program, draws_the_same_bytes_with_one_and_two_threads) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(osteon(folder, "synth biped --seed 5 --cells 64 -o a.glb").code, 0);
+  ASSERT_EQ(osteon(folder, "render a.glb -o one.png --size 300 150 --threads 1").code, 0);
+  ASSERT_EQ(osteon(folder, "--threads 2 render a.glb -o two.png --size 300 150").code, 0);
+  ASSERT_EQ(osteon(folder, "render a.glb -o rest.png --size 300 150 --pose none").code, 0);
+  EXPECT_TRUE(test::content(folder / "one.png") == test::content(folder / "two.png"));
+  EXPECT_FALSE(test::content(folder / "one.png") == test::content(folder / "rest.png"));
+}
+
+TEST(Program, an_unknown_pose_is_refused) {
+  const test::TemporaryFolder folder;
+  io::save_obj(folder / "ball.obj", shapes::icosphere(1));
+  const auto run = osteon(folder, "render ball.obj -o ball.png --pose dance");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--pose: found 'dance', expected a number or 'none'"));
+}
+
+}  // namespace
+}  // namespace osteon

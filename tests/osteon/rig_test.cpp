@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// The main job, run as users run it, with the weights that are shipped.
+#include <numeric>
+
+#include "osteon/base/random.h"
+#include "osteon/io/save.h"
+#include "osteon/program.h"
+#include "osteon/synth/character.h"
+
+namespace osteon {
+namespace {
+
+using test::osteon;
+using testing::HasSubstr;
+
+class RigCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(OSTEON_MODELS_FOLDER "/rignet")) GTEST_SKIP() << "models/rignet is not there";
+    mesh_ = synth::make_character(synth::Kind::Biped, 3, {96}).mesh;
+    io::save_obj(folder_ / "hero.obj", mesh_);
+  }
+
+  test::TemporaryFolder folder_;
+  TriangleMesh mesh_;
+};
+
+TEST_F(RigCommand, writes_a_rig_a_picture_and_a_report) {
+  const auto run = osteon(folder_, "rig hero.obj -o hero.glb --preview hero.png --report hero.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const io::Asset asset = io::load(folder_ / "hero.glb");
+  ASSERT_TRUE(asset.skeleton && asset.weights);
+  EXPECT_GE(asset.skeleton->size(), 10u);
+  EXPECT_LE(asset.weights->max_influences(), 4u);
+  EXPECT_EQ(asset.mesh.positions.size(), mesh_.positions.size());
+  EXPECT_THAT(test::content(folder_ / "hero.json"), HasSubstr("\"confidence\""));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "hero.png"));
+}
+
+TEST_F(RigCommand, the_same_bytes_with_one_and_two_threads) {
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o one.glb --threads 1").code, 0);
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o two.glb --threads 2").code, 0);
+  EXPECT_TRUE(test::content(folder_ / "one.glb") == test::content(folder_ / "two.glb"));
+}
+
+// vertices[i] of the result is vertices[order[i]] of the mesh; faces go in another order too.
+TriangleMesh reordered(const TriangleMesh& mesh, const std::vector<std::size_t>& order, Random& random) {
+  TriangleMesh out;
+  PerVertex<VertexId> moved(mesh.positions.size());
+  for (const std::size_t v : order) moved[static_cast<VertexId>(v)] = out.positions.push_back(mesh.positions.raw()[v]);
+  for (const Triangle& t : mesh.faces) out.faces.push_back({moved[t[0]], moved[t[1]], moved[t[2]]});
+  random.shuffle(std::span(out.faces.raw()));
+  return out;
+}
+
+TEST_F(RigCommand, the_same_rig_for_any_order_of_vertices) {
+  Random random(7);
+  std::vector<std::size_t> order(mesh_.positions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  random.shuffle(std::span(order));
+  io::save_obj(folder_ / "shuffled.obj", reordered(mesh_, order, random));
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb").code, 0);
+  ASSERT_EQ(osteon(folder_, "rig shuffled.obj -o shuffled.glb").code, 0);
+
+  const io::Asset a = io::load(folder_ / "hero.glb"), b = io::load(folder_ / "shuffled.glb");
+  EXPECT_EQ(a.skeleton->names, b.skeleton->names);
+  EXPECT_EQ(a.skeleton->parents, b.skeleton->parents);
+  EXPECT_EQ(a.skeleton->rest_positions, b.skeleton->rest_positions);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    EXPECT_TRUE(std::ranges::equal((*b.weights)[static_cast<VertexId>(i)], (*a.weights)[static_cast<VertexId>(order[i])])) << i;
+}
+
+TEST_F(RigCommand, a_given_skeleton_is_kept) {
+  const Rig puppet = synth::make_character(synth::Kind::Biped, 3, {96});
+  ASSERT_EQ(osteon(folder_, "synth biped --seed 3 --cells 96 -o given.glb").code, 0);
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --skeleton given.glb").code, 0);
+  const io::Asset asset = io::load(folder_ / "hero.glb");
+  EXPECT_EQ(asset.skeleton->names, puppet.skeleton.names);
+  EXPECT_EQ(asset.skeleton->parents, puppet.skeleton.parents);
+  for (const JointId j : puppet.skeleton.names.ids())
+    EXPECT_VEC3_NEAR(asset.skeleton->rest_positions[j], puppet.skeleton.rest_positions[j], 1e-5f);
+}
+
+TEST_F(RigCommand, rig_txt_goes_out_with_its_mesh_but_never_over_the_input) {
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --rigtxt rigged.txt").code, 0);
+  const io::Asset glb = io::load(folder_ / "hero.glb"), text = io::load(folder_ / "rigged.txt");
+  EXPECT_EQ(text.skeleton->names, glb.skeleton->names);
+  EXPECT_EQ(text.mesh.positions.size(), glb.mesh.positions.size());
+
+  const std::string before = test::content(folder_ / "hero.obj");
+  const auto run = osteon(folder_, "rig hero.obj -o hero.glb --rigtxt hero.txt");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("would be overwritten"));
+  EXPECT_TRUE(test::content(folder_ / "hero.obj") == before);
+}
+
+TEST_F(RigCommand, below_the_wanted_confidence_nothing_is_written_and_the_code_is_3) {
+  const auto run = osteon(folder_, "rig hero.obj -o hero.glb --min-confidence 1 --report hero.json");
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("the confidence in this rig is"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "hero.glb"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "hero.json"));
+}
+
+}  // namespace
+}  // namespace osteon

@@ -29,11 +29,18 @@ struct EvaluateArguments {
   std::string split = "val", task = "all";
 };
 
-const std::vector<metrics::ScoreColumn> kSkeletonColumns{{"IoU %", 100, 1},      {"precision %", 100, 1}, {"recall %", 100, 1},
-                                                         {"CD-J2J %", 100, 2},   {"CD-J2B %", 100, 2},    {"CD-B2B %", 100, 2},
-                                                         {"edit distance", 1, 1}};
-const std::vector<metrics::ScoreColumn> kSkinColumns{
-    {"precision %", 100, 1}, {"recall %", 100, 1}, {"L1", 1, 3}, {"mean distance", 1, 4}, {"max distance", 1, 3}};
+const std::vector<metrics::ScoreColumn> kSkeletonColumns{{"iou", "IoU %", 100, 1},
+                                                         {"precision", "precision %", 100, 1},
+                                                         {"recall", "recall %", 100, 1},
+                                                         {"cd_j2j", "CD-J2J %", 100, 2},
+                                                         {"cd_j2b", "CD-J2B %", 100, 2},
+                                                         {"cd_b2b", "CD-B2B %", 100, 2},
+                                                         {"tree_edit_distance", "edit distance", 1, 1}};
+const std::vector<metrics::ScoreColumn> kSkinColumns{{"precision", "precision %", 100, 1},
+                                                     {"recall", "recall %", 100, 1},
+                                                     {"l1", "L1", 1, 3},
+                                                     {"mean_distance", "mean distance", 1, 4},
+                                                     {"max_distance", "max distance", 1, 3}};
 
 std::vector<double> values(const metrics::SkeletonScores& s) {
   return {s.iou, s.precision, s.recall, s.cd_j2j, s.cd_j2b, s.cd_b2b, s.tree_edit_distance};

@@ -15,7 +15,7 @@ namespace {
 
 ScoreTable small_table() {
   return {"skeleton",
-          {{"IoU %", 100.0, 1}, {"depth", 1.0, 2}},
+          {{"iou", "IoU %", 100.0, 1}, {"depth", "depth", 1.0, 2}},
           {{"a", "bird", {0.5, 1.0}}, {"b", "fish", {0.7, 2.0}}, {"c", "fish", {0.9, 6.0}}},
           {"d: no joints"}};
 }
@@ -52,7 +52,7 @@ TEST(ScoreTable, shows_means_by_category_and_overall) {
 
 TEST(ScoreTable, gives_the_unscaled_values_as_json) {
   const auto json = to_json(small_table());
-  EXPECT_NEAR(json["all"]["IoU %"]["mean"].get<double>(), 0.7, 1e-12);
+  EXPECT_NEAR(json["all"]["iou"]["mean"].get<double>(), 0.7, 1e-12);
   EXPECT_EQ(json["categories"]["fish"]["depth"]["mean"], 4.0);
   EXPECT_EQ(json["characters"].size(), 3u);
   EXPECT_EQ(json["failures"][0], "d: no joints");

@@ -117,7 +117,7 @@ std::string to_text(const ScoreTable& table) {
   for (const ScoreColumn& column : table.columns) head.push_back(column.name);
   std::vector<std::vector<std::string>> lines{head};
   for (const auto& [category, rows] : by_category(table)) lines.push_back(line_of(category, rows, table));
-  if (!table.rows.empty()) {
+  if (table.rows.size() > 1) {
     lines.push_back(line_of("all", all_rows(table), table));
     lines.push_back(interval_line(all_rows(table), table));
   }
@@ -132,7 +132,7 @@ json to_json(const ScoreTable& table) {
   out["characters"] = json::array();
   for (const ScoreRow& row : table.rows) {
     json entry{{"id", row.id}, {"category", row.category}};
-    for (std::size_t c = 0; c < table.columns.size(); ++c) entry[table.columns[c].name] = value_or_null(row.values[c]);
+    for (std::size_t c = 0; c < table.columns.size(); ++c) entry[table.columns[c].key] = value_or_null(row.values[c]);
     out["characters"].push_back(std::move(entry));
   }
   return out;

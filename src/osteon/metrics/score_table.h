@@ -10,7 +10,8 @@
 namespace osteon::metrics {
 
 struct ScoreColumn {
-  std::string name;     // as in the table: "IoU %"
+  std::string key;      // in JSON: "iou"
+  std::string name;     // in the table: "IoU %"
   double factor = 1.0;  // values are shown times this: 100 for percent
   int digits = 2;       // after the decimal point
 };
@@ -35,9 +36,9 @@ struct Estimate {
 };
 Estimate estimate(std::span<const double> values);
 
-// Means by category, in alphabetical order, and overall with the interval, as aligned text.
+// Means by category, in alphabetical order, and overall with the interval, as aligned text; of a single row just that.
 std::string to_text(const ScoreTable& table);
-// The same with intervals for every category, every character's values (unscaled) and the failures.
+// The same with intervals for every category, every character's values and the failures; values without the columns' factor.
 nlohmann::json to_json(const ScoreTable& table);
 
 }  // namespace osteon::metrics

@@ -95,7 +95,7 @@ json summary(const Group& rows, const ScoreTable& table) {
   json out{{"characters", rows.size()}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const Estimate e = estimate(column_of(rows, c));
-    out[table.columns[c].name] = {
+    out[table.columns[c].key] = {
         {"mean", value_or_null(e.mean)}, {"low", value_or_null(e.low)}, {"high", value_or_null(e.high)}, {"count", e.count}};
   }
   return out;

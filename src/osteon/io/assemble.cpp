@@ -53,11 +53,7 @@ std::optional<Eigen::Affine3d> common_transform(const std::vector<Eigen::Affine3
 
 class Assembler {
  public:
-  Assembler(Scene&& scene, const LoadOptions& options, Asset& asset) : scene_(std::move(scene)), asset_(asset) {
-    const Eigen::Affine3d import = import_transform(scene_, options);
-    for (Scene::Node& node : scene_.nodes) node.world = import * node.world;
-    import_ = import;
-  }
+  Assembler(const Scene& scene, Asset& asset) : scene_(scene), asset_(asset) {}
 
   std::vector<PlacedInstance> run() {
     if (const auto joints = joint_tree(scene_, asset_.repairs)) tree_ = *joints;
@@ -65,6 +61,7 @@ class Assembler {
     std::vector<PlacedInstance> placed;
     for (const Scene::Instance& instance : scene_.instances) placed.push_back(place(instance));
     if (asset_.mesh.positions.empty()) throw Error("no vertices");
+    if (asset_.mesh.faces.empty()) throw Error("{} vertices, but no faces", asset_.mesh.positions.size());
     report();
     if (!tree_.skeleton.names.empty()) {
       if (skinned_) asset_.weights = std::move(weights_);
@@ -75,7 +72,7 @@ class Assembler {
 
  private:
   PlacedInstance place(const Scene::Instance& instance) {
-    Scene::Mesh& mesh = scene_.meshes[instance.mesh];
+    const Scene::Mesh& mesh = scene_.meshes[instance.mesh];
     PlacedInstance placed{instance, asset_.mesh.positions.size(), asset_.mesh.faces.size(), std::nullopt, {}};
     if (placed.first_vertex + mesh.positions.size() > kMostVertices || asset_.mesh.faces.size() + mesh.faces.size() > 2 * kMostVertices)
       throw Error("more than {} vertices or {} faces in all", kMostVertices, 2 * kMostVertices);
@@ -176,9 +173,8 @@ class Assembler {
     tell(weightless_, "vertices of skinned meshes have no weight; bound to the root");
   }
 
-  Scene scene_;
+  const Scene& scene_;
   Asset& asset_;
-  Eigen::Affine3d import_;
   JointTree tree_;
   SkinWeights weights_;
   bool skinned_ = false;
@@ -186,6 +182,18 @@ class Assembler {
 };
 
 }  // namespace
+
+void to_our_world(Scene& scene, const LoadOptions& options) {
+  const Eigen::Affine3d import = import_transform(scene, options);
+  for (Scene::Node& node : scene.nodes) node.world = import * node.world;
+}
+
+Eigen::Matrix3d normal_matrix(const Eigen::Affine3d& transform) {
+  const Eigen::Matrix3d m = transform.linear();
+  Eigen::Matrix3d cofactors;
+  for (int c = 0; c < 3; ++c) cofactors.col(c) = m.col((c + 1) % 3).cross(m.col((c + 2) % 3));
+  return m.determinant() < 0.0 ? Eigen::Matrix3d(-cofactors) : cofactors;
+}
 
 Eigen::Affine3d blended_transform(const Scene::Mesh& mesh, std::size_t vertex, std::span<const Eigen::Affine3d> joint_to_world) {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
@@ -199,8 +207,9 @@ Eigen::Affine3d blended_transform(const Scene::Mesh& mesh, std::size_t vertex, s
   return total > 0.0 ? Eigen::Affine3d(sum / total) : joint_to_world[0];
 }
 
-std::vector<PlacedInstance> assemble(Scene&& scene, const LoadOptions& options, Asset& asset) {
-  return Assembler(std::move(scene), options, asset).run();
+std::vector<PlacedInstance> assemble(Scene& scene, const LoadOptions& options, Asset& asset) {
+  to_our_world(scene, options);
+  return Assembler(scene, asset).run();
 }
 
 }  // namespace osteon::io

@@ -54,8 +54,7 @@ class TreeBuilder {
     tree_.joint_of_node.resize(scene.nodes.size());
   }
 
-  std::optional<JointTree> build() {
-    const std::vector<std::size_t> nodes = joint_nodes(scene_);
+  std::optional<JointTree> build(const std::vector<std::size_t>& nodes) {
     if (nodes.empty()) return std::nullopt;
     if (nodes.size() > kMostJoints - 1) throw Error("{} joints, expected at most {}", nodes.size(), kMostJoints - 1);
     for (const std::size_t n : nodes) is_joint_[n] = true;
@@ -136,6 +135,19 @@ class TreeBuilder {
 
 }  // namespace
 
-std::optional<JointTree> joint_tree(const Scene& scene, std::vector<std::string>& repairs) { return TreeBuilder(scene, repairs).build(); }
+std::optional<JointTree> joint_tree(const Scene& scene, std::vector<std::string>& repairs) {
+  return TreeBuilder(scene, repairs).build(joint_nodes(scene));
+}
+
+std::optional<JointTree> joint_tree_of_nodes(const Scene& scene, std::vector<std::string>& repairs) {
+  std::vector<bool> shows_mesh(scene.nodes.size());
+  for (const Scene::Instance& instance : scene.instances) shows_mesh[instance.node] = true;
+  std::vector<std::size_t> nodes;
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const bool container = !scene.nodes[n].parent && (scene.nodes[n].name == "RootNode" || scene.nodes[n].name == "Scene");  // FBX, DAE
+    if (!shows_mesh[n] && !container) nodes.push_back(n);
+  }
+  return TreeBuilder(scene, repairs).build(nodes);
+}
 
 }  // namespace osteon::io

@@ -15,4 +15,7 @@ struct JointTree {
 // Joints come in the order of the skins, moved behind their parents where needed. Empty if no skin has joints.
 std::optional<JointTree> joint_tree(const Scene& scene, std::vector<std::string>& repairs);
 
+// For files without skins: all nodes that show no mesh are joints, but for a container that a format puts above them.
+std::optional<JointTree> joint_tree_of_nodes(const Scene& scene, std::vector<std::string>& repairs);
+
 }  // namespace osteon::io

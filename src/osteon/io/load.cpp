@@ -1,51 +1,119 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/io/load.h"
 
-#include <cassert>
-
 #include "osteon/base/error.h"
+#include "osteon/io/appearance.h"
 #include "osteon/io/assemble.h"
-#include "osteon/io/bytes.h"
-#include "osteon/io/gltf/document.h"
+#include "osteon/io/format.h"
 #include "osteon/io/gltf/import.h"
+#include "osteon/io/importer.h"
+#include "osteon/io/joint_tree.h"
+#include "osteon/io/obj/obj.h"
+#include "osteon/io/other/assimp_import.h"
+#include "osteon/io/ply/ply.h"
+#include "osteon/io/rigtxt.h"
 #include "osteon/io/source_document.h"
+#include "osteon/io/stl/stl.h"
 
 namespace osteon::io {
 namespace {
 
-Asset load_gltf(const std::filesystem::path& path, Bytes bytes, const LoadOptions& options) {
-  Asset asset;
+// A file read but not yet made strict.
+struct Loose {
+  Scene scene;
   SourceDocument source;
-  source.gltf = GltfSource{gltf::parse(path, std::move(bytes), asset.repairs), {}, {}};
-  auto [scene, layouts] = gltf::import_scene(source.gltf->document, asset.repairs);
-  source.gltf->layouts = std::move(layouts);
-  source.instances = assemble(std::move(scene), options, asset);
-  asset.source = std::make_shared<const SourceDocument>(std::move(source));
-  return asset;
+  std::vector<std::string> repairs;
+};
+
+void read_gltf(const std::filesystem::path& path, Bytes bytes, Loose& loose) {
+  loose.source.gltf = GltfSource{gltf::parse(path, std::move(bytes), loose.repairs), {}, {}};
+  auto [scene, layouts] = gltf::import_scene(loose.source.gltf->document, loose.repairs);
+  loose.source.gltf->layouts = std::move(layouts);
+  loose.scene = std::move(scene);
 }
 
-// Errors of readers that do not know the file's name get it here.
-Asset load_any(const std::filesystem::path& path, const LoadOptions& options) {
-  Bytes bytes = read_file(path);
-  if (gltf::is_gltf(bytes)) return load_gltf(path, std::move(bytes), options);
-  throw Error("{}: unknown format", path.filename().string());
+Scene read_scene(Format format, const File& file) {
+  switch (format) {
+    case Format::obj:
+      return obj::import(file);
+    case Format::ply:
+      return ply::import(file);
+    case Format::stl:
+      return stl::import(file);
+    case Format::rigtxt:
+      return rigtxt::import(file);
+    case Format::gltf:
+    case Format::other:
+      break;
+  }
+  return other::import(file);
 }
 
-}  // namespace
+Loose read(const std::filesystem::path& path) {
+  Bytes bytes = utf8_of(read_file(path));
+  const Format format = format_of(path, bytes);
+  Loose loose;
+  if (format == Format::gltf) {
+    read_gltf(path, std::move(bytes), loose);
+    return loose;
+  }
+  loose.scene = read_scene(format, {path, bytes, loose.repairs});
+  std::size_t repaired = 0, vertices = 0;
+  for (Scene::Mesh& mesh : loose.scene.meshes) {
+    vertices += mesh.positions.size();
+    repaired += repair_positions(mesh.positions);
+  }
+  if (repaired > 0 && repaired == vertices) throw Error("none of the {} vertices is finite", vertices);
+  if (repaired > 0) loose.repairs.push_back(fmt::format("moved {} vertices with coordinates that are not finite to the origin", repaired));
+  return loose;
+}
 
-Asset load(const std::filesystem::path& path, const LoadOptions& options) {
-  Asset asset = load_any(path, options);
-  asset.path = path;
+Asset make_strict(Loose loose, const LoadOptions& options) {
+  Asset asset;
+  asset.repairs = std::move(loose.repairs);
+  loose.source.instances = assemble(loose.scene, options, asset);
+  if (!loose.source.gltf) loose.source.appearance = merged_appearance(loose.scene, loose.source.instances);
+  asset.source = std::make_shared<const SourceDocument>(std::move(loose.source));
   validate(asset.mesh);
   if (asset.skeleton) validate(*asset.skeleton);
   if (asset.weights) validate(*asset.weights, asset.mesh.positions.size(), asset.skeleton->size());
   return asset;
 }
 
+// Every Error names the file.
+template <class Work>
+auto naming(const std::filesystem::path& path, Work work) {
+  try {
+    return work();
+  } catch (const Error& e) {
+    const std::string file = path.filename().string(), text = e.what();
+    if (text.find(file) != std::string::npos) throw;
+    throw Error("{}: {}", file, text);
+  }
+}
+
+}  // namespace
+
+Asset load(const std::filesystem::path& path, const LoadOptions& options) {
+  return naming(path, [&] {
+    if (options.scale && !(*options.scale > 0.0f && std::isfinite(*options.scale)))
+      throw Error("scale {}, expected a positive number", *options.scale);
+    Asset asset = make_strict(read(path), options);
+    asset.path = path;
+    return asset;
+  });
+}
+
 Skeleton load_skeleton(const std::filesystem::path& path, const LoadOptions& options) {
-  Asset asset = load(path, options);
-  if (!asset.skeleton) throw Error("{}: no joints", path.filename().string());
-  return *std::move(asset.skeleton);
+  return naming(path, [&] {
+    Loose loose = read(path);
+    to_our_world(loose.scene, options);
+    auto joints = joint_tree(loose.scene, loose.repairs);
+    if (!joints) joints = joint_tree_of_nodes(loose.scene, loose.repairs);
+    if (!joints) throw Error("no joints");
+    validate(joints->skeleton);
+    return std::move(joints->skeleton);
+  });
 }
 
 }  // namespace osteon::io

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,7 +28,8 @@ struct Scene {
   struct Material {
     std::string name;
     Eigen::Vector4f colour = Eigen::Vector4f::Ones();  // linear, with opacity
-    std::filesystem::path texture;                     // absolute; may not exist; empty if there is none
+    std::filesystem::path texture;                     // may not exist; empty if there is none
+    std::vector<std::uint8_t> image;                   // the texture itself where the file holds it
   };
   // Values at the corners of faces, several of which may share one. Empty if the file has none.
   template <class T>
@@ -65,5 +68,8 @@ struct Scene {
 
 // Larger coordinates than this are taken for garbage like NaN is: their squares overflow a float.
 constexpr float kLargestCoordinate = 1e15f;
+
+// Moves vertices with such coordinates to the origin. Returns how many there were.
+std::size_t repair_positions(std::span<Vec3f> positions);
 
 }  // namespace osteon::io

@@ -36,7 +36,7 @@ struct GltfSource {
 struct Appearance {
   std::vector<Scene::Material> materials;
   std::vector<std::uint32_t> face_materials;  // one for each face
-  Scene::Layer<Vec3f> normals;                // world space
+  Scene::Layer<Vec3f> normals;                // world space, of unit length, or zero where the file has none
   Scene::Layer<Eigen::Vector2f> texture_coordinates;
   std::vector<Eigen::Vector4f> colours;  // one for each vertex
 };

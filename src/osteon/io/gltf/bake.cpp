@@ -7,14 +7,6 @@
 namespace osteon::io::gltf {
 namespace {
 
-// Normals turn with the inverse transpose; the cofactors are that up to a positive factor, and exist for singular transforms too.
-Eigen::Matrix3d normal_matrix(const Eigen::Affine3d& transform) {
-  const Eigen::Matrix3d m = transform.linear();
-  Eigen::Matrix3d cofactors;
-  for (int c = 0; c < 3; ++c) cofactors.col(c) = m.col((c + 1) % 3).cross(m.col((c + 2) % 3));
-  return m.determinant() < 0.0 ? Eigen::Matrix3d(-cofactors) : cofactors;
-}
-
 Eigen::Vector3d direction(const Eigen::Vector3d& v) {
   const double length = v.norm();
   return length > 0.0 && std::isfinite(length) ? Eigen::Vector3d(v / length) : Eigen::Vector3d::UnitY();

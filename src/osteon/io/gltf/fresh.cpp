@@ -71,8 +71,9 @@ std::vector<std::vector<FaceId>> faces_by_material(const TriangleMesh& mesh, con
   return out;
 }
 
-std::size_t add_texture(Document& document, const std::filesystem::path& file) {
-  const Bytes bytes = read_file(file);
+std::size_t add_texture(Document& document, const Scene::Material& material) {
+  const std::filesystem::path& file = material.texture;
+  const Bytes bytes = material.image.empty() ? read_file(file) : material.image;
   const std::string type = image_type(bytes);
   if (type != "image/png" && type != "image/jpeg") throw Error("{}: neither PNG nor JPEG", file.filename().string());
   const std::size_t view = Writer(document).image(bytes);
@@ -86,9 +87,9 @@ std::size_t add_texture(Document& document, const std::filesystem::path& file) {
 std::size_t add_material(Document& document, const Scene::Material& material, bool textured, std::vector<std::string>& changes) {
   const Eigen::Vector4f& c = material.colour;
   Json surface{{"baseColorFactor", {c.x(), c.y(), c.z(), c.w()}}};
-  if (!material.texture.empty() && textured) {
+  if (textured && !(material.texture.empty() && material.image.empty())) {
     try {
-      surface["baseColorTexture"] = Json{{"index", add_texture(document, material.texture)}};
+      surface["baseColorTexture"] = Json{{"index", add_texture(document, material)}};
     } catch (const Error& e) {
       changes.push_back(fmt::format("{}; the material '{}' goes without this texture", e.what(), material.name));
     }
@@ -107,7 +108,8 @@ Json attributes_of(Writer& writer, const Part& part, const TriangleMesh& mesh, c
   std::vector<std::uint32_t> colours;
   for (const Split& s : part.splits) {
     positions.push_back(mesh.positions[s.vertex]);
-    normals.push_back(s.normal == kNone ? smooth[s.vertex] : appearance.normals.values[s.normal]);
+    const Vec3f normal = s.normal == kNone ? Vec3f(Vec3f::Zero()) : appearance.normals.values[s.normal];
+    normals.push_back(normal.isZero(0.0f) ? smooth[s.vertex] : normal);
     if (s.coordinate != kNone)
       for (const float u : appearance.texture_coordinates.values[s.coordinate]) coordinates.push_back(u);
     if (!appearance.colours.empty())
@@ -133,7 +135,7 @@ GltfSource fresh_document(const std::string& name, const TriangleMesh& mesh, con
                        {"nodes", Json::array({Json{{"name", name}, {"mesh", 0}}})},
                        {"meshes", Json::array({Json{{"name", name}, {"primitives", Json::array()}}})}};
   const auto groups = faces_by_material(mesh, appearance);
-  const PerVertex<Vec3f> smooth = appearance.normals.values.empty() ? vertex_normals(mesh) : PerVertex<Vec3f>();
+  const PerVertex<Vec3f> smooth = vertex_normals(mesh);
   Splitter splitter(mesh, appearance);
   Writer writer(document);
   MeshLayout layout;
@@ -142,7 +144,7 @@ GltfSource fresh_document(const std::string& name, const TriangleMesh& mesh, con
     const Part part = splitter.split(groups[g]);
     const bool textured = !appearance.texture_coordinates.values.empty();
     const Scene::Material material =
-        appearance.materials.empty() ? Scene::Material{"surface", {0.8f, 0.8f, 0.8f, 1.0f}, {}} : appearance.materials[g];
+        appearance.materials.empty() ? Scene::Material{"surface", {0.8f, 0.8f, 0.8f, 1.0f}, {}, {}} : appearance.materials[g];
     Json primitive{{"attributes", attributes_of(writer, part, mesh, smooth, appearance)}, {"indices", writer.scalars(part.corners)}};
     primitive["material"] = add_material(document, material, textured, changes);
     layout.blocks.push_back(

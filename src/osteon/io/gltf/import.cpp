@@ -134,20 +134,6 @@ std::vector<std::uint32_t> unroll(std::vector<std::uint32_t> corners, std::size_
   return out;
 }
 
-// Replaces coordinates that are not finite, or too large to be squared, by 0. Returns whether there were any.
-bool repair_positions(std::vector<float>& values, const std::string& where, std::vector<std::string>& repairs) {
-  std::size_t broken = 0;
-  for (std::size_t i = 0; i < values.size(); i += 3) {
-    if (std::abs(values[i]) <= kLargestCoordinate && std::abs(values[i + 1]) <= kLargestCoordinate &&
-        std::abs(values[i + 2]) <= kLargestCoordinate)
-      continue;
-    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(i), 3, 0.0f);
-    ++broken;
-  }
-  if (broken > 0) repairs.push_back(fmt::format("{}: moved {} vertices with coordinates that are not finite to the origin", where, broken));
-  return broken > 0;
-}
-
 // JOINTS_n and WEIGHTS_n of one vertex block, every n.
 void read_influences(const Document& document, const Element& attributes, const MeshLayout::Block& block, Scene::Mesh& mesh) {
   std::vector<std::vector<std::uint32_t>> joints;
@@ -187,11 +173,14 @@ std::optional<std::size_t> read_block(const Document& document, const Element& p
   if (positions.components() != 3) throw Error("{}: {} components, expected 3 for POSITION", positions.where(), positions.components());
   if (mesh.positions.size() + positions.count() > kMostElements)
     throw Error("{}: more than {} vertices in one mesh", positions.where(), kMostElements);
-  std::vector<float> values = positions.floats();
-  const bool repaired = repair_positions(values, positions.where(), repairs);
-  layout.blocks.push_back({accessor, mesh.positions.size(), positions.count(), repaired});
-  mesh.positions.resize(mesh.positions.size() + positions.count());
-  std::copy(values.begin(), values.end(), mesh.positions[layout.blocks.back().first].data());
+  const std::size_t first = mesh.positions.size();
+  const std::vector<float> values = positions.floats();
+  mesh.positions.resize(first + positions.count());
+  if (!values.empty()) std::copy(values.begin(), values.end(), mesh.positions[first].data());
+  const std::size_t repaired = repair_positions(std::span(mesh.positions).subspan(first));
+  if (repaired > 0)
+    repairs.push_back(fmt::format("{}: moved {} vertices with coordinates that are not finite to the origin", positions.where(), repaired));
+  layout.blocks.push_back({accessor, first, positions.count(), repaired > 0});
   read_influences(document, attributes, layout.blocks.back(), mesh);
   return layout.blocks.size() - 1;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "osteon/base/error.h"
 #include "osteon/io/gltf/single_buffer.h"
@@ -36,10 +37,26 @@ class Splitter {
     for (const FaceId f : faces)
       for (std::size_t k = 0; k < 3; ++k) part.corners.push_back(split_of(part, f, k));
     for (const Split& s : part.splits) first_split_[index(s.vertex)] = kNone;
+    sort_by_vertex(part);
     return part;
   }
 
  private:
+  // The mesh's own order: a mesh without seams keeps its vertices' numbers.
+  static void sort_by_vertex(Part& part) {
+    std::vector<std::uint32_t> order(part.splits.size()), place(part.splits.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return part.splits[a].vertex < part.splits[b].vertex; });
+    std::vector<Split> sorted;
+    for (std::uint32_t k = 0; k < order.size(); ++k) {
+      place[order[k]] = k;
+      sorted.push_back(part.splits[order[k]]);
+    }
+    part.splits = std::move(sorted);
+    for (std::uint32_t& corner : part.corners) corner = place[corner];
+  }
+
   std::uint32_t split_of(Part& part, FaceId f, std::size_t k) {
     const auto corner = [&](const auto& layer) { return layer.values.empty() ? kNone : layer.corners[index(f)][k]; };
     const VertexId v = mesh_.faces[f][k];

@@ -155,8 +155,7 @@ class RigRemoval {
   }
 
   void write_children() {
-    for (const std::size_t n : order_)
-      if (!cleared_.removed_nodes[n]) set_list(json_["nodes"][n], "children", nodes_[n].children);
+    for (const std::size_t n : order_) set_list(json_["nodes"][n], "children", nodes_[n].children);
   }
 
   void list_in_scenes(const std::vector<std::vector<std::size_t>>& scenes_of_instance) {
@@ -168,21 +167,28 @@ class RigRemoval {
       json_["scenes"] = Json::array({Json{{"nodes", roots}}});
     }
     cleared_.scenes_with_mesh.resize(json_["scenes"].size());
-    for (std::size_t i = 0; i < instances_.size(); ++i) {
-      const auto& listed = scenes_of_instance[i];
-      for (const std::size_t s : listed.empty() ? std::vector<std::size_t>{0} : listed) {
+    for (std::size_t s = 0; s < json_["scenes"].size(); ++s) {
+      std::vector<std::size_t> roots = other_roots(json_["scenes"][s]);
+      for (std::size_t i = 0; i < instances_.size(); ++i) {
+        const auto& shown_in = scenes_of_instance[i];
+        if (shown_in.empty() ? s != 0 : std::find(shown_in.begin(), shown_in.end(), s) == shown_in.end()) continue;
         cleared_.scenes_with_mesh[s] = true;
-        Json& roots = json_["scenes"][s]["nodes"];
-        if (std::find(roots.begin(), roots.end(), Json(cleared_.mesh_nodes[i])) == roots.end()) roots.push_back(cleared_.mesh_nodes[i]);
+        roots.push_back(cleared_.mesh_nodes[i]);
       }
+      set_list(json_["scenes"][s], "nodes", roots);
     }
-    for (Json& scene : json_["scenes"]) {
-      if (!scene.contains("nodes")) continue;
-      std::vector<std::size_t> kept;
-      for (const Json& root : scene["nodes"])
-        if (const auto n = root.get<std::size_t>(); !cleared_.removed_nodes.at(n)) kept.push_back(n);
-      set_list(scene, "nodes", kept);
-    }
+  }
+
+  // Meshes are listed behind the others in the order in which they were read, so that reading the result gives the same vertices again.
+  std::vector<std::size_t> other_roots(const Json& scene) const {
+    std::vector<std::size_t> roots;
+    if (!scene.contains("nodes")) return roots;
+    const auto& meshes = cleared_.mesh_nodes;
+    for (const Json& root : scene["nodes"])
+      if (const auto n = root.get<std::size_t>();
+          !cleared_.removed_nodes.at(n) && std::find(meshes.begin(), meshes.end(), n) == meshes.end())
+        roots.push_back(n);
+    return roots;
   }
 
   // Channels that move what is gone, or what a skin ignores, go; the morph weights of a mesh follow it to its new node.

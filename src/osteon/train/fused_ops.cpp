@@ -39,9 +39,11 @@ MatrixView view(const Tensor& x, Transposed transposed = Transposed::no) { retur
 
 Tensor contiguous_columns(const Tensor& x) { return x.stride(1) == 1 ? x : x.contiguous(); }
 
-// c (m,n) = a b + beta c on all threads: blocks of rows of c that do not depend on how many threads there are.
+// c (m,n) = a b + beta c on all threads: blocks of rows of c that do not depend on how many threads there are. At least two blocks: a
+// product on its own is shared out by oneDNN, which adds up in another order for each number of threads.
 void parallel_gemm(std::int64_t m, std::int64_t n, std::int64_t k, const MatrixView& a, const MatrixView& b, float beta, float* c) {
-  constexpr std::int64_t block = 512;  // rows: enough to repay packing b again
+  constexpr std::int64_t most = 512;  // rows: enough to repay packing b again
+  const std::int64_t block = std::clamp<std::int64_t>((m + 1) / 2, 1, most);
   at::parallel_for(0, (m + block - 1) / block, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       const std::int64_t first = i * block, rows = std::min(block, m - first);

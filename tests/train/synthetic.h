@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include "osteon/base/random.h"
+#include "osteon/train/networks.h"
+
+// Inputs of the networks without meshes: rings of vertices with neighbours beside them, and joints on a line.
+namespace osteon::train::test {
+
+// `vertices` points near a circle; neighbours at one and two steps (one-ring) and at three and five (geodesic).
+inline void add_ring_mesh(NetworkInputs& inputs, int vertices, Random& random) {
+  std::vector<std::uint32_t> offsets{0}, ring, geodesic;
+  const std::int32_t first = inputs.mesh.batch.rows();
+  for (int v = 0; v < vertices; ++v) {
+    const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(v) / static_cast<float>(vertices);
+    inputs.mesh.positions.insert(inputs.mesh.positions.end(), {0.4f * std::cos(angle) + random.uniform(-0.05f, 0.05f),
+                                                               0.5f + 0.4f * std::sin(angle), random.uniform(-0.1f, 0.1f)});
+    const auto at = [&](int step) { return static_cast<std::uint32_t>((v + step + vertices) % vertices); };
+    ring.insert(ring.end(), {at(1), at(-1), at(2), at(-2)});
+    geodesic.insert(geodesic.end(), {at(3), at(-3), at(5), at(-5)});
+    offsets.push_back(static_cast<std::uint32_t>(ring.size()));
+  }
+  inputs.mesh.ring.add(offsets, ring, first);
+  inputs.mesh.geodesic.add(offsets, geodesic, first);
+  inputs.mesh.batch.add(static_cast<std::size_t>(vertices));
+  for (int i = 0; i < vertices * nets::rignet::skin_inputs; ++i) inputs.skin_features.push_back(random.uniform(-1.0f, 1.0f));
+}
+
+inline void add_joints(NetworkInputs& inputs, int joints, Random& random) {
+  const std::int32_t first = inputs.joints.batch.rows();
+  const std::int32_t mesh = static_cast<std::int32_t>(inputs.joints.batch.offsets.size()) - 1;
+  for (int j = 0; j < joints; ++j) {
+    inputs.joints.positions.insert(inputs.joints.positions.end(), {random.uniform(-0.3f, 0.3f), 0.1f * static_cast<float>(j), 0.0f});
+    inputs.joints.plane_distance.push_back(random.uniform(0.0f, 0.3f));
+    for (int i = 0; i < j; ++i) {
+      inputs.pairs.first.push_back(first + i);
+      inputs.pairs.second.push_back(first + j);
+      inputs.pairs.mesh_of.push_back(mesh);
+      for (int k = 0; k < 8; ++k) inputs.pairs.features.push_back(random.uniform(-0.5f, 0.5f));
+    }
+  }
+  inputs.joints.pairs.add_complete(joints, first);
+  inputs.joints.batch.add(static_cast<std::size_t>(joints));
+}
+
+inline NetworkInputs two_characters(int vertices = 40, int joints = 6) {
+  Random random(11);
+  NetworkInputs inputs;
+  for (const int extra : {0, 7}) {
+    add_ring_mesh(inputs, vertices + extra, random);
+    add_joints(inputs, joints + extra / 3, random);
+  }
+  return inputs;
+}
+
+}  // namespace osteon::train::test

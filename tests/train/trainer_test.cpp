@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/train/trainer.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "osteon/base/error.h"
+#include "osteon/mesh/shapes.h"
+
+namespace osteon::train {
+namespace {
+
+// A capsule with three joints along it and weights that blend between their bones.
+Rig capsule_rig(float length) {
+  Rig rig;
+  rig.mesh = shapes::capsule(0.2f, length, 12, 6);
+  const Eigen::AlignedBox3f box = bounds(rig.mesh);
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const auto along = [&](float t) {
+    Vec3f p = box.center();
+    p[axis] = box.min()[axis] + t * box.sizes()[axis];
+    return p;
+  };
+  rig.skeleton.add("root", std::nullopt, along(0.15f));
+  rig.skeleton.add("middle", JointId{0}, along(0.5f));
+  rig.skeleton.add("tip", JointId{1}, along(0.85f));
+  for (const Vec3f& p : rig.mesh.positions) {
+    const float t = (p[axis] - box.min()[axis]) / box.sizes()[axis];
+    rig.weights.append(std::vector<Influence>{{JointId{0}, std::max(0.0f, 1.0f - 2.0f * t)},
+                                              {JointId{1}, 1.0f - std::abs(2.0f * t - 1.0f)},
+                                              {JointId{2}, std::max(0.0f, 2.0f * t - 1.0f)}});
+  }
+  return rig;
+}
+
+const std::vector<dataset::Example>& examples() {
+  static const std::vector<dataset::Example> made = [] {
+    dataset::PrepareOptions options;
+    options.working_mesh = {150, 100, 5000};
+    std::vector<dataset::PreparedCharacter> characters;
+    for (const float length : {0.8f, 1.2f, 2.0f})
+      characters.push_back(dataset::prepare(capsule_rig(length), {std::to_string(length), "capsules", "other"}, options));
+    return dataset::examples_of(std::move(characters));
+  }();
+  return made;
+}
+
+TrainOptions options_for(std::int64_t steps) {
+  TrainOptions options;
+  options.steps = steps;
+  options.report_seconds = 0.0;  // every step
+  options.seed = 7;
+  return options;
+}
+
+std::vector<double> losses(
+    Trainer& trainer, const std::function<bool()>& stop = [] { return false; }) {
+  std::vector<double> found;
+  trainer.run(
+      examples(), {},
+      [&](const TrainReport& r) {
+        if (!r.is_validation) found.push_back(r.figures.at("loss"));
+      },
+      stop);
+  return found;
+}
+
+double mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+class Learning : public ::testing::TestWithParam<Task> {};
+
+TEST_P(Learning, thirty_steps_lower_the_loss) {
+  Trainer trainer(GetParam(), options_for(30), fresh_model(GetParam(), 1));
+  const std::vector<double> found = losses(trainer);
+  ASSERT_EQ(found.size(), 30u);
+  EXPECT_LT(mean(std::span(found).last(5)), 0.9 * mean(std::span(found).first(5)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Rignet, Learning,
+                         ::testing::Values(Task::attention, Task::joints, Task::collapse, Task::bones, Task::root, Task::skin));
+
+TEST(Trainer, goes_on_after_a_stop_as_if_there_had_been_none) {
+  const auto file = std::filesystem::temp_directory_path() / ("osteon_resume_" + std::to_string(::getpid()) + ".safetensors");
+  TrainOptions options = options_for(6);
+  options.checkpoint = file;
+  Trainer whole(Task::root, options, fresh_model(Task::root, 1)), first(Task::root, options, fresh_model(Task::root, 1)),
+      second(Task::root, options, fresh_model(Task::root, 99));
+  const std::vector<double> expected = losses(whole);
+  std::vector<double> found = losses(first, [&] { return first.steps() == 3; });
+  second.resume();
+  for (const double loss : losses(second)) found.push_back(loss);
+  std::filesystem::remove(file);
+  EXPECT_EQ(found, expected);
+}
+
+TEST(Trainer, refuses_the_checkpoint_of_another_task) {
+  const auto file = std::filesystem::temp_directory_path() / ("osteon_task_" + std::to_string(::getpid()) + ".safetensors");
+  TrainOptions options = options_for(1);
+  options.checkpoint = file;
+  Trainer bones(Task::bones, options, fresh_model(Task::bones, 1)), root(Task::root, options, fresh_model(Task::root, 1));
+  losses(bones);
+  EXPECT_THROW(root.resume(), Error);
+  std::filesystem::remove(file);
+}
+
+TEST(Trainer, gives_the_same_losses_for_the_same_seed) {
+  Trainer a(Task::bones, options_for(3), fresh_model(Task::bones, 1)), b(Task::bones, options_for(3), fresh_model(Task::bones, 1));
+  EXPECT_EQ(losses(a), losses(b));
+}
+
+}  // namespace
+}  // namespace osteon::train

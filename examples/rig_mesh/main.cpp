@@ -2,6 +2,7 @@
 // rig_mesh IN OUT.glb: what `osteon rig` does, in ten lines.
 #include <cstdio>
 
+#include "osteon/base/error.h"
 #include "osteon/io/load.h"
 #include "osteon/io/save.h"
 #include "osteon/pipelines/rignet.h"

@@ -250,6 +250,32 @@ TEST(SaveGlb, the_rig_that_was_there_goes_with_its_animations) {
   EXPECT_TRUE(has_repair(saved.changes, "from 1 animations"));
 }
 
+TEST(SaveGlb, extensions_that_describe_the_old_rig_go_and_others_stay) {
+  gltf::Document document = skinned_tetrahedron_document();
+  document.json["extensionsUsed"] = {"VRMC_vrm", "VRMC_materials_mtoon"};
+  document.json["extensions"] = {{"VRMC_vrm", {{"humanoid", {{"hips", {{"node", 1}}}}}}}};
+  document.json["materials"][0]["extensions"] = {{"VRMC_materials_mtoon", {{"specVersion", "1.0"}}}};
+  const Saved saved = rig_and_load(document);
+  EXPECT_FALSE(saved.document.json.contains("extensions"));
+  EXPECT_EQ(saved.document.json["extensionsUsed"].dump(), R"(["VRMC_materials_mtoon"])");
+  EXPECT_EQ(saved.document.json["materials"][0]["extensions"].dump(), R"({"VRMC_materials_mtoon":{"specVersion":"1.0"}})");
+  EXPECT_TRUE(has_repair(saved.changes, "removed the extension VRMC_vrm"));
+}
+
+TEST(SaveGlb, morph_weights_stay_animated_on_the_meshs_new_node) {
+  gltf::Document document = tetrahedron_document();
+  const auto channel = [](int node, const char* path) { return Json{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}; };
+  document.json["animations"] =
+      Json::array({Json{{"samplers", Json::array({Json{{"input", 0}, {"output", 0}}})},
+                        {"channels", Json::array({channel(0, "weights"), channel(0, "translation"), channel(1, "scale")})}}});
+  document.json["nodes"][0]["children"] = {1};
+  document.json["nodes"].push_back({{"name", "socket"}});
+  const Json json = rig_and_load(document).document.json;
+  ASSERT_EQ(json["nodes"][2]["mesh"], 0);
+  EXPECT_EQ(json["animations"][0]["channels"].dump(),
+            Json::array({channel(2, "weights"), channel(0, "translation"), channel(1, "scale")}).dump());
+}
+
 TEST(SaveGlb, a_skin_that_deforms_its_mesh_is_rewritten_as_it_stood) {
   gltf::Document document = skinned_tetrahedron_document();
   document.json["nodes"][2]["translation"] = {1, 4, 0};
@@ -299,6 +325,22 @@ TEST(SaveGlb, at_most_so_many_influences_are_kept_the_largest) {
   EXPECT_EQ(eight.asset.weights->max_influences(), 8u);
   EXPECT_TRUE(eight.document.json["meshes"][0]["primitives"][0]["attributes"].contains("WEIGHTS_1"));
   EXPECT_EQ((*eight.asset.weights)[VertexId{0}][0].joint, weights[VertexId{0}][0].joint);
+}
+
+TEST(SaveGlb, more_joints_than_8_bits_hold_get_16) {
+  const TemporaryFolder folder;
+  const Asset asset = load(write_document(folder / "in.glb", tetrahedron_document()));
+  Skeleton skeleton;
+  for (std::uint16_t j = 0; j < 300; ++j)
+    skeleton.add(fmt::format("j{}", j), j > 0 ? std::optional(JointId(j - 1)) : std::nullopt, Vec3f(0, 0.1f * j, 0),
+                 Quatf(Eigen::AngleAxisf(0.3f * j, Vec3f::UnitX())));
+  SkinWeights weights;
+  for (std::uint16_t v = 0; v < 4; ++v) weights.append(std::vector<Influence>{{JointId(299 - v), 1.0f}});
+  const Saved saved = save_and_load(asset, skeleton, weights);
+  EXPECT_EQ(*saved.asset.weights, weights);
+  EXPECT_VEC3_NEAR(saved.asset.skeleton->rest_positions[JointId{299}], Vec3f(0, 29.9f, 0), 1e-5f)
+      << "rounding does not add up along the chain";
+  EXPECT_TRUE(has_repair(saved.changes, "300 joints; viewers on Android show at most 254"));
 }
 
 TEST(SaveGlb, quantized_weights_sum_exactly_and_are_near) {

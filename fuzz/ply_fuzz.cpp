@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import_fuzz.h"
+#include "osteon/io/ply/ply.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return osteon::io::fuzz_import("/nowhere/fuzz.ply", data, size,
+                                 [](const osteon::io::File& file) { return osteon::io::ply::import(file); });
+}

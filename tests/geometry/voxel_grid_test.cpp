@@ -100,6 +100,15 @@ TEST(VoxelGrid, overlapping_parts_stay_solid) {
   EXPECT_EQ(grid.at({-0.5f, 0, 0}), Voxel::Interior);
 }
 
+TEST(VoxelGrid, the_gap_between_two_equal_boxes_is_outside) {
+  for (const Vec3f& size : {Vec3f(0.2f, 1, 0.2f), Vec3f(0.4f, 0.4f, 0.4f), Vec3f(0.3f, 0.3f, 1)}) {
+    const TriangleMesh box = shapes::box(size);
+    const VoxelGrid grid = voxelize(shapes::merged(shifted(box, {-0.3f, 0, 0}), shifted(box, {0.3f, 0, 0})));
+    EXPECT_EQ(grid.at(Vec3f::Zero()), Voxel::Outside) << size.transpose();
+    EXPECT_EQ(grid.at({-0.3f, 0, 0}), Voxel::Interior) << size.transpose();
+  }
+}
+
 TEST(VoxelGrid, pieces_that_face_inwards_are_solid_too) {
   const VoxelGrid grid = voxelize(turned_inside_out(shapes::icosphere(3)));
   EXPECT_EQ(grid.at({0.2f, 0.1f, 0}), Voxel::Interior);

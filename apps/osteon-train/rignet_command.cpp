@@ -27,6 +27,8 @@ struct Arguments {
   bool resume = false, combined = false, no_augmentation = false;
   double bandwidth = 0.04;
   train::TrainOptions options;
+
+  Arguments() { options.task.run.norm = {.momentum = 0.05, .largest_stretch = 3.0, .largest_offset = 5.0}; }
 };
 
 void add_common_options(CLI::App& command, Arguments& a) {
@@ -43,7 +45,13 @@ void add_common_options(CLI::App& command, Arguments& a) {
   command.add_option("--weight-decay", a.options.adam.weight_decay, "Decoupled weight decay")->capture_default_str();
   command.add_option("--clip", a.options.adam.largest_norm, "Largest norm of the gradient (0: any)")->capture_default_str();
   command.add_option("--warm-up", a.options.warm_up, "Share of the run in which the learning rate rises")->capture_default_str();
-  command.add_option("--momentum", a.options.task.run.momentum, "Of the normalisations' running figures")->capture_default_str();
+  command.add_option("--momentum", a.options.task.run.norm.momentum, "Of the normalisations' running figures")->capture_default_str();
+  command.add_option("--largest-stretch", a.options.task.run.norm.largest_stretch, "Of batch renormalisation (1: plain batches)")
+      ->check(CLI::Range(1.0, 100.0))
+      ->capture_default_str();
+  command.add_option("--largest-offset", a.options.task.run.norm.largest_offset, "Of batch renormalisation (0: plain batches)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command.add_option("--neighbours", a.options.task.batch.neighbours, "Geodesic neighbours of a vertex")->capture_default_str();
   command.add_flag("--no-augmentation", a.no_augmentation, "Show every character as it is");
   command.add_option("--seed", a.options.seed)->capture_default_str();

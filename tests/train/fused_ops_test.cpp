@@ -19,11 +19,12 @@ struct Result {
   Parameters parameters;  // after the step: with gradients, and with new running figures
 };
 
-// Random signs of the normalisation's weights, so that the maximum turns into a minimum in some columns.
+// Random signs of the normalisation's weights, so that the maximum turns into a minimum in some columns; random running means, so that
+// renormalisation has something to correct.
 Parameters shaken_parameters(Network network) {
   Parameters parameters = initial_parameters(nets::rignet::parameter_shapes(network), 5);
   for (auto& [name, value] : parameters) {
-    if (name.find(".norm.weight") == std::string::npos) continue;
+    if (name.find(".norm.weight") == std::string::npos && name.find(".norm.running_mean") == std::string::npos) continue;
     Random random(value.size(0));
     for (std::int64_t i = 0; i < value.size(0); ++i) value.data_ptr<float>()[i] = random.uniform(-1.0f, 1.0f);
   }
@@ -31,11 +32,12 @@ Parameters shaken_parameters(Network network) {
   return parameters;
 }
 
-Result one_step(Network network, Engine engine) {
+Result one_step(Network network, Engine engine, const NormRule& rule = {}) {
   Result result{{}, shaken_parameters(network)};
   RunOptions options;
   options.mode = Mode::training;
   options.engine = engine;
+  options.norm = rule;
   result.output = run_network(network, result.parameters, test::two_characters(), options);
   Random random(3);
   at::Tensor direction = at::empty_like(result.output);
@@ -50,8 +52,8 @@ class FusedNetwork : public ::testing::TestWithParam<Network> {};
 
 // A whole network makes a million decisions (ReLU, maximum); rounding turns a few of them, so gradients agree less closely than in one
 // layer.
-TEST_P(FusedNetwork, gives_the_values_and_gradients_of_plain_operations) {
-  const Result plain = one_step(GetParam(), Engine::plain), fused = one_step(GetParam(), Engine::fused);
+void expect_same_step(Network network, const NormRule& rule) {
+  const Result plain = one_step(network, Engine::plain, rule), fused = one_step(network, Engine::fused, rule);
   EXPECT_LT(difference(fused.output, plain.output), 1e-4f);
   for (const auto& [name, value] : plain.parameters) {
     const at::Tensor& other = fused.parameters.at(name);
@@ -60,6 +62,21 @@ TEST_P(FusedNetwork, gives_the_values_and_gradients_of_plain_operations) {
     else
       EXPECT_LT(difference(other, value), 1e-4f) << name;
   }
+}
+
+TEST_P(FusedNetwork, gives_the_values_and_gradients_of_plain_operations) { expect_same_step(GetParam(), {}); }
+
+TEST_P(FusedNetwork, renormalises_like_plain_operations) { expect_same_step(GetParam(), {0.05, 2.0, 1.0}); }
+
+// Ioffe 2017: without bounds on the corrections, training sees exactly the values of use.
+TEST_P(FusedNetwork, renormalised_without_bounds_gives_the_values_of_use) {
+  Parameters parameters = shaken_parameters(GetParam());
+  RunOptions use, training;
+  training.mode = Mode::training;
+  training.norm = {0.0, 1e9, 1e9};
+  const at::NoGradGuard no_grad;
+  const at::Tensor expected = run_network(GetParam(), parameters, test::two_characters(), use);
+  EXPECT_LT(difference(run_network(GetParam(), parameters, test::two_characters(), training), expected), 1e-4f);
 }
 
 TEST_P(FusedNetwork, agrees_in_use) {

@@ -62,12 +62,12 @@ std::vector<float> signs(const at::Tensor& norm_weight) {
   return sign;
 }
 
-Norm first_norm(const EdgeTerms& terms, const Graph& graph, const NormParameters& parameters, double momentum) {
+Norm first_norm(const EdgeTerms& terms, const Graph& graph, const NormParameters& parameters, const NormRule& rule) {
   GroupSums sum(terms.width), squares(terms.width);
   for_row_groups(graph.vertices, [&](int group, std::int64_t first, std::int64_t last) {
     edge_hidden_moments(terms, graph.range(first, last), sum.of(group), squares.of(group));
   });
-  return batch_norm_of(sum, squares, graph.edges, parameters, momentum);
+  return batch_norm_of(sum, squares, graph.edges, parameters, rule);
 }
 
 // The scratch of one group of rows: one row for each edge of its largest tile.
@@ -200,7 +200,7 @@ at::Tensor through_hidden(const Graph& graph, const EdgeTerms& terms, const Fold
 
 }  // namespace
 
-at::Tensor edge_layer_train(const at::Tensor& terms, const EdgeIndices& edges, const EdgeLayerParameters& parameters, double momentum,
+at::Tensor edge_layer_train(const at::Tensor& terms, const EdgeIndices& edges, const EdgeLayerParameters& parameters, const NormRule& rule,
                             EdgeLayerMemory& memory) {
   const Graph graph(edges);
   const EdgeTerms views{terms.data_ptr<float>(), terms.size(1) / 2};
@@ -208,7 +208,7 @@ at::Tensor edge_layer_train(const at::Tensor& terms, const EdgeIndices& edges, c
   memory.r = at::empty({graph.edges, views.width}, at::kFloat);
   memory.best = at::empty({graph.vertices, views.width}, at::kFloat);
   memory.arg = at::empty({graph.vertices, views.width}, at::kInt);
-  memory.norm1 = first_norm(views, graph, parameters.norm1, momentum);
+  memory.norm1 = first_norm(views, graph, parameters.norm1, rule);
   const Folded folded = fold(parameters.weight, parameters.bias, memory.norm1);
   const std::vector<float> sign = signs(parameters.norm2.weight);
   const Second to{folded, sign, memory.best.data_ptr<float>(), memory.arg.data_ptr<std::int32_t>()};
@@ -218,7 +218,7 @@ at::Tensor edge_layer_train(const at::Tensor& terms, const EdgeIndices& edges, c
     second_layer(views, graph, first, last, to, sum.of(group), squares.of(group),
                  [&](const EdgeRange& tile) { return r + tile.offsets[tile.first] * views.width; });
   });
-  memory.norm2 = batch_norm_of(sum, squares, graph.edges, parameters.norm2, momentum);
+  memory.norm2 = batch_norm_of(sum, squares, graph.edges, parameters.norm2, rule);
   return finish(memory.best, sign, memory.norm2);
 }
 

@@ -34,7 +34,7 @@ struct EdgeLayerGradients {
 };
 
 // terms (V,2H): receiver terms (bias included), then source terms. Normalises with the figures of the batch, updates the running ones.
-at::Tensor edge_layer_train(const at::Tensor& terms, const EdgeIndices& edges, const EdgeLayerParameters& parameters, double momentum,
+at::Tensor edge_layer_train(const at::Tensor& terms, const EdgeIndices& edges, const EdgeLayerParameters& parameters, const NormRule& rule,
                             EdgeLayerMemory& memory);
 EdgeLayerGradients edge_layer_backward(const at::Tensor& gradient, const EdgeIndices& edges, const EdgeLayerParameters& parameters,
                                        EdgeLayerMemory& memory);

@@ -144,7 +144,7 @@ Norm norm_of(const Tensor& x, const FusedNorm& norm) {
   for_row_groups(x.size(0), [&](int group, std::int64_t first, std::int64_t last) {
     relu_moments(x.data_ptr<float>() + first * x.size(1), last - first, x.size(1), sum.of(group), squares.of(group));
   });
-  return batch_norm_of(sum, squares, x.size(0), norm.parameters, norm.momentum);
+  return batch_norm_of(sum, squares, x.size(0), norm.parameters, norm.rule);
 }
 
 struct ReluNorm : torch::autograd::Function<ReluNorm> {
@@ -189,9 +189,9 @@ struct EdgeLayerState {
 // The parameters come as tensors too, so that autograd sees them: weight, bias, those of norm1, those of norm2.
 struct EdgeLayer : torch::autograd::Function<EdgeLayer> {
   static Tensor forward(AutogradContext* context, const Tensor& terms, at::TensorList, const EdgeIndices& edges,
-                        const EdgeLayerParameters& parameters, double momentum) {
+                        const EdgeLayerParameters& parameters, const NormRule& rule) {
     EdgeLayerState state{edges, parameters, {}};
-    Tensor out = edge_layer_train(terms, edges, parameters, momentum, state.memory);
+    Tensor out = edge_layer_train(terms, edges, parameters, rule, state.memory);
     keep(context, std::move(state));
     return out;
   }
@@ -225,7 +225,7 @@ Tensor edge_layer(const Tensor& terms, const nets::Edges<TorchOps>& edges, const
   if (layer.norm1.mode == Mode::use) return edge_layer_use(terms.contiguous(), indices, parameters);
   const std::vector<Tensor> trained{
       layer.weight, layer.bias, parameters.norm1.weight, parameters.norm1.bias, parameters.norm2.weight, parameters.norm2.bias};
-  return EdgeLayer::apply(terms.contiguous(), at::TensorList(trained), indices, parameters, layer.norm1.momentum);
+  return EdgeLayer::apply(terms.contiguous(), at::TensorList(trained), indices, parameters, layer.norm1.rule);
 }
 
 Tensor FusedOps::linear_of(const nets::Path& path, const nets::Input<FusedOps>& input, int) {
@@ -271,7 +271,7 @@ Tensor FusedOps::edge_conv(const nets::Path& path, const Tensor& x, const nets::
 }
 
 FusedNorm FusedOps::norm(const nets::Path& path) const {
-  return {{at(path / "weight"), at(path / "bias"), at(path / "running_mean"), at(path / "running_var")}, mode_, momentum_};
+  return {{at(path / "weight"), at(path / "bias"), at(path / "running_mean"), at(path / "running_var")}, mode_, rule_};
 }
 
 }  // namespace osteon::train

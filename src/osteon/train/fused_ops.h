@@ -14,7 +14,7 @@ torch::Tensor segment_max(const torch::Tensor& x, const torch::Tensor& offsets);
 struct FusedNorm {
   NormParameters parameters;
   Mode mode;
-  double momentum;
+  NormRule rule;
 };
 torch::Tensor relu_norm(const torch::Tensor& x, const FusedNorm& norm);
 
@@ -28,7 +28,7 @@ torch::Tensor edge_layer(const torch::Tensor& terms, const nets::Edges<TorchOps>
 // The first layer of an edge convolution acts once per vertex: W1 [x_v, x_u - x_v] = (A - B) x_v + B x_u with W1 = [A | B].
 class FusedOps : public TorchOps {
  public:
-  FusedOps(Parameters& parameters, Mode mode, double momentum = 0.1) : TorchOps(parameters, mode, torch::kCPU, momentum) {}
+  FusedOps(Parameters& parameters, Mode mode, const NormRule& rule = {}) : TorchOps(parameters, mode, torch::kCPU, rule) {}
 
   Tensor linear(const nets::Path& path, const Tensor& x, int) { return linear_blocks({x}, {at(path / "weight")}, at(path / "bias")); }
   Tensor rows(const Tensor& x, const Index& index) { return picked_rows(x, index); }

@@ -34,10 +34,10 @@ at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
 
 at::Tensor run_network(Network network, Parameters& parameters, const NetworkInputs& inputs, const RunOptions& options) {
   if (options.engine == Engine::fused) {
-    FusedOps ops(parameters, options.mode, options.momentum);
+    FusedOps ops(parameters, options.mode, options.norm);
     return run(ops, network, inputs);
   }
-  TorchOps ops(parameters, options.mode, options.device, options.momentum);
+  TorchOps ops(parameters, options.mode, options.device, options.norm);
   return run(ops, network, inputs);
 }
 

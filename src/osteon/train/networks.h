@@ -5,6 +5,7 @@
 
 #include "osteon/nets/dry_run.h"
 #include "osteon/nets/graph.h"
+#include "osteon/train/norm_rule.h"
 #include "osteon/train/parameters.h"
 
 // RigNet's networks on LibTorch. The templates are instantiated in networks.cpp alone, as torch's headers take long to compile.
@@ -19,7 +20,7 @@ struct RunOptions {
   Mode mode = Mode::use;
   Engine engine = Engine::fused;
   at::Device device = at::kCPU;
-  double momentum = 0.1;  // of the running figures, in training
+  NormRule norm = {};  // in training
 };
 
 // The network's output, see nets/rignet.h.

@@ -9,16 +9,14 @@
 namespace osteon::train {
 namespace {
 
-Norm with_affine(std::vector<double> mean, std::vector<double> inverse_deviation, const NormParameters& parameters) {
-  Norm norm{std::move(mean), std::move(inverse_deviation), {}, {}};
+void add_affine(Norm& norm, const NormParameters& parameters) {
   const float* weight = parameters.weight.data_ptr<float>();
   const float* bias = parameters.bias.data_ptr<float>();
   for (std::size_t c = 0; c < norm.mean.size(); ++c) {
-    const double scale = weight[c] * norm.inverse_deviation[c];
+    const double scale = weight[c] * norm.inverse_deviation[c] * norm.stretch[c];
     norm.scale.push_back(static_cast<float>(scale));
-    norm.shift.push_back(static_cast<float>(bias[c] - scale * norm.mean[c]));
+    norm.shift.push_back(static_cast<float>(bias[c] + weight[c] * norm.offset[c] - scale * norm.mean[c]));
   }
-  return norm;
 }
 
 }  // namespace
@@ -37,29 +35,38 @@ std::vector<double> GroupSums::total() const {
   return sum;
 }
 
-Norm batch_norm_of(const GroupSums& sum, const GroupSums& squares, std::int64_t rows, const NormParameters& parameters, double momentum) {
-  std::vector<double> mean = sum.total(), deviation = squares.total();
+Norm batch_norm_of(const GroupSums& sum, const GroupSums& squares, std::int64_t rows, const NormParameters& parameters,
+                   const NormRule& rule) {
+  const std::vector<double> sums = sum.total(), square_sums = squares.total();
+  Norm norm;
   float* running_mean = parameters.running_mean.data_ptr<float>();
   float* running_var = parameters.running_var.data_ptr<float>();
   const auto n = static_cast<double>(rows);
-  for (std::size_t c = 0; c < mean.size(); ++c) {
-    mean[c] /= n;
-    const double variance = std::max(0.0, deviation[c] / n - mean[c] * mean[c]);
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    const double mean = sums[c] / n, variance = std::max(0.0, square_sums[c] / n - mean * mean);
+    const double deviation = std::sqrt(variance + norm_epsilon), usual = std::sqrt(running_var[c] + norm_epsilon);
+    norm.mean.push_back(mean);
+    norm.inverse_deviation.push_back(1.0 / deviation);
+    norm.stretch.push_back(std::clamp(deviation / usual, 1.0 / rule.largest_stretch, rule.largest_stretch));
+    norm.offset.push_back(std::clamp((mean - running_mean[c]) / usual, -rule.largest_offset, rule.largest_offset));
     const double unbiased = rows > 1 ? variance * n / (n - 1.0) : variance;
-    running_mean[c] = static_cast<float>((1.0 - momentum) * running_mean[c] + momentum * mean[c]);
-    running_var[c] = static_cast<float>((1.0 - momentum) * running_var[c] + momentum * unbiased);
-    deviation[c] = 1.0 / std::sqrt(variance + norm_epsilon);
+    running_mean[c] = static_cast<float>((1.0 - rule.momentum) * running_mean[c] + rule.momentum * mean);
+    running_var[c] = static_cast<float>((1.0 - rule.momentum) * running_var[c] + rule.momentum * unbiased);
   }
-  return with_affine(std::move(mean), std::move(deviation), parameters);
+  add_affine(norm, parameters);
+  return norm;
 }
 
 Norm stored_norm_of(const NormParameters& parameters) {
-  std::vector<double> mean, inverse_deviation;
+  Norm norm;
   for (std::int64_t c = 0; c < parameters.weight.size(0); ++c) {
-    mean.push_back(parameters.running_mean.data_ptr<float>()[c]);
-    inverse_deviation.push_back(1.0 / std::sqrt(parameters.running_var.data_ptr<float>()[c] + norm_epsilon));
+    norm.mean.push_back(parameters.running_mean.data_ptr<float>()[c]);
+    norm.inverse_deviation.push_back(1.0 / std::sqrt(parameters.running_var.data_ptr<float>()[c] + norm_epsilon));
   }
-  return with_affine(std::move(mean), std::move(inverse_deviation), parameters);
+  norm.stretch.assign(norm.mean.size(), 1.0);
+  norm.offset.assign(norm.mean.size(), 0.0);
+  add_affine(norm, parameters);
+  return norm;
 }
 
 NormGradient norm_gradient(const Norm& norm, const std::vector<double>& sum, const std::vector<double>& product, std::int64_t rows) {
@@ -67,8 +74,9 @@ NormGradient norm_gradient(const Norm& norm, const std::vector<double>& sum, con
   std::vector<double> weight(sum.size());
   const auto n = static_cast<double>(rows);
   for (std::size_t c = 0; c < sum.size(); ++c) {
-    weight[c] = norm.inverse_deviation[c] * (product[c] - norm.mean[c] * sum[c]);
-    const double slope = norm.scale[c] * norm.inverse_deviation[c] * weight[c] / n;
+    const double along = norm.inverse_deviation[c] * (product[c] - norm.mean[c] * sum[c]);  // sum of dL/dy times the standardised x
+    weight[c] = norm.stretch[c] * along + norm.offset[c] * sum[c];
+    const double slope = norm.scale[c] * norm.inverse_deviation[c] * along / n;
     gradient.slope.push_back(static_cast<float>(slope));
     gradient.constant.push_back(static_cast<float>(norm.scale[c] * sum[c] / n - slope * norm.mean[c]));
   }

@@ -7,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "osteon/train/norm_rule.h"
+
 // Shared parts of the layers that are written by hand for the CPU. Sums are made over a fixed number of row groups and then group by
 // group, so results do not depend on the number of threads.
 namespace osteon::train {
@@ -29,9 +31,11 @@ class GroupSums {
   std::vector<float> values_;
 };
 
-// Batch normalisation y = scale x + shift as it stands for one batch (or for use), per column.
+// Batch normalisation y = scale x + shift as it stands for one batch (or for use), per column:
+// y = weight ((x - mean) inverse_deviation stretch + offset) + bias.
 struct Norm {
   std::vector<double> mean, inverse_deviation;
+  std::vector<double> stretch, offset;  // 1 and 0 but for batch renormalisation; constants for the gradient
   std::vector<float> scale, shift;
 };
 
@@ -40,8 +44,9 @@ struct NormParameters {
   at::Tensor weight, bias, running_mean, running_var;
 };
 
-// How training updates running figures: running = (1 - momentum) running + momentum batch, with the unbiased variance.
-Norm batch_norm_of(const GroupSums& sum, const GroupSums& squares, std::int64_t rows, const NormParameters& parameters, double momentum);
+// Training: normalises with the figures of the batch, corrected by `rule`, and updates the running ones.
+Norm batch_norm_of(const GroupSums& sum, const GroupSums& squares, std::int64_t rows, const NormParameters& parameters,
+                   const NormRule& rule);
 Norm stored_norm_of(const NormParameters& parameters);
 
 // dL/dx = scale * dL/dy - constant - slope * x, where x is normalised with figures of the batch itself.

@@ -21,8 +21,8 @@ class TorchOps {
   using Tensor = torch::Tensor;
   using Index = torch::Tensor;  // 32-bit
 
-  TorchOps(Parameters& parameters, Mode mode, torch::Device device, double momentum = 0.1)
-      : parameters_(parameters), mode_(mode), device_(device), momentum_(momentum) {}
+  TorchOps(Parameters& parameters, Mode mode, torch::Device device, const NormRule& rule = {})
+      : parameters_(parameters), mode_(mode), device_(device), rule_(rule) {}
 
   Tensor tensor(std::span<const float> values, int rows, int columns) const {
     return torch::from_blob(const_cast<float*>(values.data()), {rows, columns}, torch::kFloat).clone().to(device_);
@@ -34,8 +34,9 @@ class TorchOps {
   }
   Tensor linear(const nets::Path& path, const Tensor& x, int) { return torch::linear(x, at(path / "weight"), at(path / "bias")); }
   Tensor batch_norm(const nets::Path& path, const Tensor& x) {
+    if (mode_ == Mode::training && rule_.renormalises()) return batch_renorm(path, x);
     return torch::batch_norm(x, at(path / "weight"), at(path / "bias"), at(path / "running_mean"), at(path / "running_var"),
-                             mode_ == Mode::training, momentum_, norm_epsilon, true);
+                             mode_ == Mode::training, rule_.momentum, norm_epsilon, true);
   }
   Tensor relu(const Tensor& x) { return torch::relu(x); }
   Tensor subtract(const Tensor& x, const Tensor& y) { return x - y; }
@@ -49,6 +50,20 @@ class TorchOps {
   }
 
  protected:
+  Tensor batch_renorm(const nets::Path& path, const Tensor& x) {
+    const Tensor mean = x.mean(0), variance = x.var(0, false), deviation = (variance + norm_epsilon).sqrt();
+    Tensor running_mean = at(path / "running_mean"), running_var = at(path / "running_var"), stretch, offset;
+    {
+      const torch::NoGradGuard constants;
+      const Tensor usual = (running_var + norm_epsilon).sqrt();
+      stretch = (deviation / usual).clamp(1.0 / rule_.largest_stretch, rule_.largest_stretch);
+      offset = ((mean - running_mean) / usual).clamp(-rule_.largest_offset, rule_.largest_offset);
+      const double n = static_cast<double>(x.size(0)), unbias = n > 1.0 ? n / (n - 1.0) : 1.0;
+      running_mean.mul_(1.0 - rule_.momentum).add_(mean, rule_.momentum);
+      running_var.mul_(1.0 - rule_.momentum).add_(variance, rule_.momentum * unbias);
+    }
+    return ((x - mean) / deviation * stretch + offset) * at(path / "weight") + at(path / "bias");
+  }
   const Tensor& at(const nets::Path& path) const {
     const auto found = parameters_.find(path.name());
     if (found == parameters_.end()) throw Error("the network has no parameter '{}' among {} given", path.name(), parameters_.size());
@@ -58,7 +73,7 @@ class TorchOps {
   Parameters& parameters_;
   Mode mode_;
   torch::Device device_;
-  double momentum_;
+  NormRule rule_;
 };
 
 }  // namespace osteon::train

@@ -97,22 +97,21 @@ dataset::Batch Trainer::batch_of(const std::vector<dataset::Example>& train, con
   return dataset::training_batch(drawn, options_.task.batch, options_.augment, random);
 }
 
-// Running figures lag behind the weights and, with batches of two meshes, are mostly those of the last twenty. The plain mean over fresh
-// batches with the weights as they are now is what use needs. Training itself does not read them.
-void Trainer::settle(const std::vector<dataset::Example>& train, const std::vector<double>& weights) {
-  constexpr std::uint64_t first = std::uint64_t{1} << 40;  // batches that no step sees
-  const at::NoGradGuard no_grad;
-  TaskOptions options = options_.task;
-  for (int i = 0; i < options_.settling_batches; ++i) {
-    options.run.momentum = 1.0 / (i + 1);
-    training_loss(task_, model_, batch_of(train, weights, first + static_cast<std::uint64_t>(i)), options);
-  }
+// Plain batch normalisation at first, while the running figures still chase the weights; then more and more renormalised. The running
+// figures begin as plain means.
+NormRule Trainer::norm_rule() const {
+  const NormRule& full = options_.task.run.norm;
+  const double begun = (static_cast<double>(step_) - options_.renormalise_from) / (options_.renormalise_to - options_.renormalise_from);
+  const double t = std::clamp(begun, 0.0, 1.0);
+  return {std::max(full.momentum, 1.0 / static_cast<double>(step_ + 1)), 1.0 + t * (full.largest_stretch - 1.0), t * full.largest_offset};
 }
 
 std::map<std::string, double> Trainer::step(const std::vector<dataset::Example>& train, const std::vector<double>& weights) {
   const auto start = Clock::now();
   const dataset::Batch batch = batch_of(train, weights, static_cast<std::uint64_t>(step_));
-  const at::Tensor loss = training_loss(task_, model_, batch, options_.task);
+  TaskOptions task = options_.task;
+  task.run.norm = norm_rule();
+  const at::Tensor loss = training_loss(task_, model_, batch, task);
   loss.backward();
   const double rate = learning_rate();
   const double norm = adam_.step(model_, rate);
@@ -129,7 +128,6 @@ TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::
                          const std::function<void(const TrainReport&)>& report, const std::function<bool()>& stop) {
   const std::vector<double> weights = dataset::sampling_weights(train);
   const auto validated = [&] {
-    settle(train, weights);
     auto figures = validate(task_, model_, validation, options_.task);
     report({step_, seconds_, progress(), true, figures});
     return figures;
@@ -144,10 +142,7 @@ TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::
     if (progress() < 1.0 && validation_timer.due()) validated();
   }
   TrainResult result{stopped ? Ending::stopped : Ending::complete, step_, seconds_, {}};
-  if (stopped)
-    settle(train, weights);  // the weights so far can be used too
-  else
-    result.validation = validated();
+  if (!stopped) result.validation = validated();
   save();
   return result;
 }

@@ -25,7 +25,7 @@ struct TrainOptions {
   std::uint64_t seed = 1;
   double report_seconds = 15.0;
   double validate_seconds = 300.0;  // how often to look at the validation characters; at the end always
-  int settling_batches = 24;        // before a validation the running figures of normalisations are measured anew over so many batches
+  double renormalise_from = 100.0, renormalise_to = 600.0;  // steps between which the corrections of batch renormalisation grow
   double checkpoint_seconds = 120.0;
   std::filesystem::path checkpoint;  // empty: none are written
 };
@@ -68,7 +68,7 @@ class Trainer {
   double progress() const;
   double learning_rate() const;
   std::map<std::string, double> step(const std::vector<dataset::Example>& train, const std::vector<double>& weights);
-  void settle(const std::vector<dataset::Example>& train, const std::vector<double>& weights);
+  NormRule norm_rule() const;
   dataset::Batch batch_of(const std::vector<dataset::Example>& train, const std::vector<double>& weights, std::uint64_t number) const;
   void save() const;
 

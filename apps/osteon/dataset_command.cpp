@@ -42,14 +42,17 @@ void prepare(const PrepareArguments& arguments) {
     }
   });
   std::vector<dataset::PreparedCharacter> characters;
-  for (auto& result : results) {
+  std::vector<dataset::ManifestEntry> used;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    auto& result = results[i];
     if (!result) continue;
+    used.push_back(entries[i]);
     for (const std::string& note : result->notes) spdlog::info("{}: {}", result->info.id, note);
     characters.push_back(std::move(*result));
   }
   if (characters.empty())
     throw Error("{}: none of the {} characters of split '{}' can be used", arguments.data.string(), entries.size(), arguments.split);
-  dataset::save_characters(arguments.output, characters, {{"split", arguments.split}, {"data", arguments.data.filename().string()}});
+  dataset::save_characters(arguments.output, characters, {{"split", arguments.split}, {"sources", dataset::sources_of(used)}});
   spdlog::info("{} of {} characters written to {}", characters.size(), entries.size(), arguments.output.string());
 }
 

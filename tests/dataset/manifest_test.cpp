@@ -29,6 +29,12 @@ TEST(Manifest, gives_the_characters_of_a_split_in_order) {
   EXPECT_EQ(read_manifest(folder.path(), "").size(), 3u);
 }
 
+TEST(Manifest, counts_the_characters_of_each_source) {
+  const ManifestEntry a{{}, {}, "train", "CC0-1.0", "Anna", "https://a"}, b{{}, {}, "train", "MIT", "Ben", "https://b"};
+  EXPECT_EQ(sources_of({a, b, a}), R"([{"author":"Anna","characters":2,"licence":"CC0-1.0","source":"https://a"},)"
+                                   R"({"author":"Ben","characters":1,"licence":"MIT","source":"https://b"}])");
+}
+
 TEST(Manifest, names_the_line_that_is_broken) {
   const test::TemporaryFolder folder;
   write(folder / "manifest.jsonl", line("a", "train") + "{\"id\": 3}\n");

@@ -2,7 +2,9 @@
 #include "osteon/dataset/manifest.h"
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "osteon/base/error.h"
 
@@ -40,6 +42,17 @@ std::vector<ManifestEntry> read_manifest(const std::filesystem::path& folder, co
   }
   if (entries.empty()) throw Error("{}: no character has the split '{}'; expected train, val or test", path.string(), split);
   return entries;
+}
+
+std::string sources_of(const std::vector<ManifestEntry>& entries) {
+  std::map<std::tuple<std::string, std::string, std::string>, int> counts;
+  for (const ManifestEntry& e : entries) ++counts[{e.source, e.author, e.licence}];
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [origin, count] : counts) {
+    const auto& [source, author, licence] = origin;
+    list.push_back({{"source", source}, {"author", author}, {"licence", licence}, {"characters", count}});
+  }
+  return list.dump();
 }
 
 }  // namespace osteon::dataset

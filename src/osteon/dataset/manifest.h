@@ -21,4 +21,8 @@ struct ManifestEntry {
 // or the split that has no characters.
 std::vector<ManifestEntry> read_manifest(const std::filesystem::path& folder, const std::string& split);
 
+// Where characters come from, for the weights that learn from them: a JSON list of {licence, author, source, characters (how many)}, by
+// source and author.
+std::string sources_of(const std::vector<ManifestEntry>& entries);
+
 }  // namespace osteon::dataset

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "osteon/base/error.h"
 #include "osteon/io/load.h"
 #include "osteon/rig/rig.h"
 

@@ -39,9 +39,8 @@ Layer folded(Layer layer, const Affine& input) {
 }  // namespace
 
 Affine normalization(const Parameters& parameters, const nets::Path& path) {
-  constexpr double epsilon = 1e-5;  // PyTorch's default, with which the networks are trained
   auto figure = [&](const char* name) { return parameters.at(path / name).row(0).transpose().cast<double>().array().eval(); };
-  const Eigen::ArrayXd scale = figure("weight") / (figure("running_var") + epsilon).sqrt();
+  const Eigen::ArrayXd scale = figure("weight") / (figure("running_var") + nets::norm_epsilon).sqrt();
   return {narrow(scale), narrow(figure("bias") - figure("running_mean") * scale)};
 }
 

@@ -15,7 +15,7 @@ struct Affine {
   std::vector<float> scale, shift;  // by column
 };
 
-// weight (x - mean) / sqrt(var + 1e-5) + bias, from the running figures at `path`.
+// weight (x - mean) / sqrt(var + norm_epsilon) + bias, from the running figures at `path`.
 Affine normalization(const Parameters& parameters, const nets::Path& path);
 
 // The linear layer at `path` for input to which `input` is still to be applied.

@@ -24,11 +24,15 @@ class Path {
   std::string name_;
 };
 
+// PyTorch's default is 1e-5. A channel that is nearly always zero has next to no variance; on the rare mesh where it is not, it then
+// explodes by a factor of hundreds (seen in training), and with this one by thirty.
+constexpr double norm_epsilon = 1e-3;
+
 // What a network is written over: a backend that holds the parameters by path and runs the operations.
 //   Tensor  (N,C) floats, rows are vertices, edges, joints, pairs or meshes; cheap to copy (a handle)
 //   Index   (N) 32-bit row numbers; cheap to copy
 // linear      y = x W^T + b; parameters path.weight (n,C), path.bias (n)
-// batch_norm  y = weight (x - mean) / sqrt(var + 1e-5) + bias per column; parameters path.weight, path.bias, path.running_mean,
+// batch_norm  y = weight (x - mean) / sqrt(var + norm_epsilon) + bias per column; parameters path.weight, path.bias, path.running_mean,
 //             path.running_var, each (C). Use: the running figures; training: those of the batch
 // concat      the columns of all, side by side
 // rows        y[k] = x[index[k]]

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "osteon/nets/ops.h"
+
 namespace osteon::train {
 namespace {
 
@@ -44,7 +46,7 @@ Norm batch_norm_of(const GroupSums& sum, const GroupSums& squares, std::int64_t 
   const auto n = static_cast<double>(rows);
   for (std::size_t c = 0; c < sums.size(); ++c) {
     const double mean = sums[c] / n, variance = std::max(0.0, square_sums[c] / n - mean * mean);
-    const double deviation = std::sqrt(variance + norm_epsilon), usual = std::sqrt(running_var[c] + norm_epsilon);
+    const double deviation = std::sqrt(variance + nets::norm_epsilon), usual = std::sqrt(running_var[c] + nets::norm_epsilon);
     norm.mean.push_back(mean);
     norm.inverse_deviation.push_back(1.0 / deviation);
     norm.stretch.push_back(std::clamp(deviation / usual, 1.0 / rule.largest_stretch, rule.largest_stretch));
@@ -61,7 +63,7 @@ Norm stored_norm_of(const NormParameters& parameters) {
   Norm norm;
   for (std::int64_t c = 0; c < parameters.weight.size(0); ++c) {
     norm.mean.push_back(parameters.running_mean.data_ptr<float>()[c]);
-    norm.inverse_deviation.push_back(1.0 / std::sqrt(parameters.running_var.data_ptr<float>()[c] + norm_epsilon));
+    norm.inverse_deviation.push_back(1.0 / std::sqrt(parameters.running_var.data_ptr<float>()[c] + nets::norm_epsilon));
   }
   norm.stretch.assign(norm.mean.size(), 1.0);
   norm.offset.assign(norm.mean.size(), 0.0);

@@ -14,7 +14,6 @@
 namespace osteon::train {
 
 constexpr int row_groups = 16;
-constexpr double norm_epsilon = 1e-5;
 
 // Calls body(group, first, last) for `row_groups` consecutive ranges of 0..rows-1, on all of ATen's threads.
 void for_row_groups(std::int64_t rows, const std::function<void(int group, std::int64_t first, std::int64_t last)>& body);

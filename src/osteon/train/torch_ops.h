@@ -36,7 +36,7 @@ class TorchOps {
   Tensor batch_norm(const nets::Path& path, const Tensor& x) {
     if (mode_ == Mode::training && rule_.renormalises()) return batch_renorm(path, x);
     return torch::batch_norm(x, at(path / "weight"), at(path / "bias"), at(path / "running_mean"), at(path / "running_var"),
-                             mode_ == Mode::training, rule_.momentum, norm_epsilon, true);
+                             mode_ == Mode::training, rule_.momentum, nets::norm_epsilon, true);
   }
   Tensor relu(const Tensor& x) { return torch::relu(x); }
   Tensor subtract(const Tensor& x, const Tensor& y) { return x - y; }
@@ -51,11 +51,11 @@ class TorchOps {
 
  protected:
   Tensor batch_renorm(const nets::Path& path, const Tensor& x) {
-    const Tensor mean = x.mean(0), variance = x.var(0, false), deviation = (variance + norm_epsilon).sqrt();
+    const Tensor mean = x.mean(0), variance = x.var(0, false), deviation = (variance + nets::norm_epsilon).sqrt();
     Tensor running_mean = at(path / "running_mean"), running_var = at(path / "running_var"), stretch, offset;
     {
       const torch::NoGradGuard constants;
-      const Tensor usual = (running_var + norm_epsilon).sqrt();
+      const Tensor usual = (running_var + nets::norm_epsilon).sqrt();
       stretch = (deviation / usual).clamp(1.0 / rule_.largest_stretch, rule_.largest_stretch);
       offset = ((mean - running_mean) / usual).clamp(-rule_.largest_offset, rule_.largest_offset);
       const double n = static_cast<double>(x.size(0)), unbias = n > 1.0 ? n / (n - 1.0) : 1.0;

@@ -99,7 +99,7 @@ train::Model starting_model(Task task, const Arguments& a) {
 // What the weights say about themselves.
 std::map<std::string, std::string> metadata_of(const CLI::App& command, const Arguments& a, const train::TrainResult& result) {
   std::map<std::string, std::string> metadata = load_safetensors(a.data).metadata;  // sources and licences, from the preparation
-  metadata.erase("characters");                                                      // what each one is: as long as all the rest
+  metadata.erase("characters");                                                     // what each one is: as long as all the rest
   metadata["recipe"] = command.get_name() + ' ' + command.config_to_str(false, false);
   metadata["commit"] = OSTEON_COMMIT;
   metadata["seed"] = std::to_string(a.options.seed);

@@ -88,11 +88,18 @@ TEST(JointExtraction, both_sides_vote_for_a_pair) {
   expect_exactly_symmetric(found.joints);
 }
 
-TEST(JointExtraction, a_joint_seen_on_one_side_only_stays_on_that_side) {
+TEST(JointExtraction, a_joint_seen_on_one_side_stays_alone_only_where_the_other_side_has_no_body) {
+  const TriangleMesh torso = shapes::transformed(shapes::box({1, 1, 0.3f}), Transform(Eigen::Translation3f(0, 0.5f, 0)));
+  const TriangleMesh blade = shapes::box({0.1f, 1, 0.1f});
   for (float side : {1.0f, -1.0f}) {
-    const auto found = extract_joints(candidates_around({{0, 0.5f, 0}, {side * 0.3f, 0.7f, 0}}, 100, 0.008f, 6), body(), kMiddle);
-    ASSERT_EQ(found.joints.size(), 2u);
-    EXPECT_LT(distance_to_nearest({side * 0.3f, 0.7f, 0}, found.joints.positions), 0.01f);
+    const auto armed =
+        geometry::voxelize(shapes::merged(torso, shapes::transformed(blade, Transform(Eigen::Translation3f(side * 0.8f, 0.7f, 0)))));
+    const auto seen = candidates_around({{0, 0.5f, 0}, {side * 0.3f, 0.7f, 0}, {side * 0.8f, 0.7f, 0}}, 100, 0.008f, 6);
+    const auto found = extract_joints(seen, armed, kMiddle);
+    ASSERT_EQ(found.joints.size(), 4u);
+    EXPECT_LT(distance_to_nearest({side * 0.8f, 0.7f, 0}, found.joints.positions), 0.01f);
+    EXPECT_GT(distance_to_nearest({-side * 0.8f, 0.7f, 0}, found.joints.positions), 0.4f);
+    EXPECT_LT(distance_to_nearest({-side * 0.3f, 0.7f, 0}, found.joints.positions), 0.01f);
   }
 }
 

@@ -105,15 +105,28 @@ void add(JointSet& joints, const Vec3f& position, const Support& support, std::o
   joints.partner.push_back(partner);
 }
 
-void add_mode(JointSet& joints, const Mode& mode, const std::vector<Vec3f>& shifted, const std::vector<float>& weights, Mirror mirror,
-              const JointExtractionOptions& options) {
+// Whether the body reaches to within `reach` of a place of the mirror frame, along the axes.
+bool body_near(const geometry::VoxelGrid& voxels, const MirrorFrame& frame, const Vec3f& place, float reach) {
+  const Vec3f p = frame.from(place);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float step : {-reach, 0.0f, reach})
+      if (voxels.inside(p + step * Vec3f::Unit(axis))) return true;
+  return false;
+}
+
+void add_mode(JointSet& joints, const Mode& mode, const Votes& votes, const std::vector<Vec3f>& shifted, const geometry::VoxelGrid& voxels,
+              Mirror mirror, const JointExtractionOptions& options) {
+  const std::vector<float>& weights = votes.weights;
   const Support here = support_at(mode.position, shifted, weights, options.bandwidth);
   const std::size_t next = joints.size();
   if (!mode.is_pair) return add(joints, mode.position, here, mirror == Mirror::off ? std::nullopt : std::optional(next));
   const Support there = support_at(mirrored(mode.position), shifted, weights, options.bandwidth);
   const double needed = static_cast<double>(options.one_sided_share) * std::max(here.attention, there.attention);
-  if (there.attention < needed) return add(joints, mode.position, here, std::nullopt);
-  if (here.attention < needed) return add(joints, mirrored(mode.position), there, std::nullopt);
+  const auto missing = [&](const Support& side, const Vec3f& place) {
+    return side.attention < needed && !(votes.inside_used && body_near(voxels, joints.frame, place, 0.5f * options.bandwidth));
+  };
+  if (missing(there, mirrored(mode.position))) return add(joints, mode.position, here, std::nullopt);
+  if (missing(here, mode.position)) return add(joints, mirrored(mode.position), there, std::nullopt);
   const Support both{here.attention + there.attention, here.squares + there.squares};
   const Vec3f left(std::abs(mode.position.x()), mode.position.y(), mode.position.z());
   add(joints, left, both, next + 1);
@@ -137,7 +150,8 @@ std::vector<float> density_shares(const std::vector<Vec3f>& shifted, const std::
   return density;
 }
 
-JointExtraction extract_from(const Votes& votes, const MirrorFrame& frame, Mirror mirror, const JointExtractionOptions& options) {
+JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxels, const MirrorFrame& frame, Mirror mirror,
+                             const JointExtractionOptions& options) {
   JointExtraction out;
   out.joints.frame = frame;
   out.bandwidth = options.bandwidth;
@@ -146,7 +160,7 @@ JointExtraction extract_from(const Votes& votes, const MirrorFrame& frame, Mirro
   const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step}).points;
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
   prune(modes, options.min_share);
-  for (const Mode& mode : modes) add_mode(out.joints, mode, shifted, votes.weights, mirror, options);
+  for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
   out.explained = explained_share(out.joints, shifted, votes.weights, h);
   return out;
 }
@@ -166,7 +180,7 @@ JointExtraction extract_joints(const JointCandidates& candidates, const geometry
   assert(candidates.positions.size() == candidates.attention.size());
   const MirrorFrame frame = symmetry ? MirrorFrame::of(*symmetry) : MirrorFrame{};
   const Votes votes = plausible_votes(candidates, voxels, frame, options.min_attention);
-  return extract_from(votes, frame, symmetry ? Mirror::across_x : Mirror::off, options);
+  return extract_from(votes, voxels, frame, symmetry ? Mirror::across_x : Mirror::off, options);
 }
 
 JointExtraction extract_joint_count(const JointCandidates& candidates, const geometry::VoxelGrid& voxels,
@@ -176,7 +190,7 @@ JointExtraction extract_joint_count(const JointCandidates& candidates, const geo
   const auto at = [&](float detail) {
     JointExtractionOptions tried = options;
     tried.bandwidth = bandwidth_of_detail(detail);
-    return extract_from(votes, frame, symmetry ? Mirror::across_x : Mirror::off, tried);
+    return extract_from(votes, voxels, frame, symmetry ? Mirror::across_x : Mirror::off, tried);
   };
   const auto miss = [&](const JointExtraction& e) { return std::max(e.joints.size(), count) - std::min(e.joints.size(), count); };
   // The number of joints grows with the detail, though not strictly: halve the interval, and keep the best that was seen.

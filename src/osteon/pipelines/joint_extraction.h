@@ -27,7 +27,8 @@ struct JointExtractionOptions {
   float step = 0.3f;             // of the mean shift
   float min_attention = 1e-3f;   // candidates below are ignored
   float min_share = 2e-3f;       // a joint gathers at least this share of all attention within its bandwidth
-  float one_sided_share = 0.1f;  // of a mirror pair, a side that gathers less than this share of the other side's attention is dropped
+  float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
+                                 // other side's attention
 };
 
 struct JointExtraction {
@@ -40,8 +41,8 @@ struct JointExtraction {
 // Candidates -> joints (RigNet, sec. 4.1; facts 5.6): those inside the volume with attention, mirrored by `symmetry`; mean shift; a density
 // that counts attention; pruning of thin modes; non-maximum suppression within one bandwidth. Where we differ from the authors' code:
 // - Density is a share of all attention, so the threshold does not depend on the number of vertices (theirs does).
-// - Both sides vote for a mirror pair; theirs throws the predictions of one side away. A pair whose one side has no support becomes one
-//   joint (a sword in one hand). Joints within half a bandwidth of the plane are put on it (theirs: 0.02).
+// - Both sides vote for a mirror pair; theirs throws the predictions of one side away. A pair of which one side has neither attention
+//   nor body becomes one joint (a sword in one hand). Joints within half a bandwidth of the plane are put on it (theirs: 0.02).
 // - When fewer than two modes pass the threshold, the two densest are taken.
 // Empty when no candidate is left. The order of the joints is that of falling density.
 JointExtraction extract_joints(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const std::optional<Plane>& symmetry,

@@ -31,8 +31,8 @@ Network network_of(Task task) {
   throw Error("unknown task");
 }
 
-// The largest of a normalised channel over a mesh is 3 to 4: a thousand of them, all positive, drown the features of the vertex beside them,
-// and two thirds of the head's channels never fire. With these figures they begin small and around zero.
+// The largest of a normalised channel over a mesh is 3 to 4: a thousand of them, all positive, drown the features of the vertex beside
+// them, and two thirds of the head's channels never fire. With these figures they begin small and around zero.
 void quieten_global_features(Network network, Parameters& parameters) {
   const char* last_norm = network == Network::skin ? "global.1.norm" : "global.0.norm";
   if (network == Network::bones || network == Network::root) return;  // 64 and 128 channels beside as many others: no trouble

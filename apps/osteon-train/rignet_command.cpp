@@ -3,7 +3,9 @@
 
 #include <ATen/Parallel.h>
 
+#include <algorithm>
 #include <csignal>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "osteon/base/parallel.h"
@@ -21,7 +23,8 @@ namespace fs = std::filesystem;
 volatile std::sig_atomic_t interrupted = 0;
 
 struct Arguments {
-  fs::path data, validation, out, init, attention, attention_out, log;
+  std::vector<fs::path> data;
+  fs::path validation, out, init, attention, attention_out, log;
   std::string device = "cpu";
   int threads = 0;
   bool resume = false, combined = false, no_augmentation = false;
@@ -32,7 +35,7 @@ struct Arguments {
 };
 
 void add_common_options(CLI::App& command, Arguments& a) {
-  command.add_option("--data", a.data, "Training characters (safetensors of `osteon dataset prepare`)")
+  command.add_option("--data", a.data, "Training characters (safetensors of `osteon dataset prepare`; several files are put together)")
       ->required()
       ->check(CLI::ExistingFile);
   command.add_option("--val", a.validation, "Validation characters")->check(CLI::ExistingFile);
@@ -77,11 +80,11 @@ void add_combined_options(CLI::App& command, Arguments& a) {
   command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
 }
 
-std::vector<dataset::Example> examples_of(const fs::path& file, Task task) {
-  if (file.empty()) return {};
-  std::vector<dataset::PreparedCharacter> characters = dataset::load_characters(file);
+std::vector<dataset::Example> examples_of(const std::vector<fs::path>& files, Task task) {
+  std::vector<dataset::PreparedCharacter> characters;
+  for (const fs::path& file : files) std::ranges::move(dataset::load_characters(file), std::back_inserter(characters));
   if (task == Task::bones || task == Task::root) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
-  if (characters.empty()) throw Error("{}: no characters to learn from", file.string());
+  if (characters.empty()) throw Error("{}: no characters to learn from", files.front().string());
   return dataset::examples_of(std::move(characters));
 }
 
@@ -98,8 +101,14 @@ train::Model starting_model(Task task, const Arguments& a) {
 
 // What the weights say about themselves.
 std::map<std::string, std::string> metadata_of(const CLI::App& command, const Arguments& a, const train::TrainResult& result) {
-  std::map<std::string, std::string> metadata = load_safetensors(a.data).metadata;  // sources and licences, from the preparation
-  metadata.erase("characters");                                                     // what each one is: as long as all the rest
+  std::map<std::string, std::string> metadata;
+  nlohmann::json sources = nlohmann::json::array();
+  for (const fs::path& file : a.data) {
+    const auto about = load_safetensors(file).metadata;
+    if (const auto listed = about.find("sources"); listed != about.end())
+      for (auto& source : nlohmann::json::parse(listed->second)) sources.push_back(std::move(source));
+  }
+  metadata["sources"] = sources.dump();
   metadata["recipe"] = command.get_name() + ' ' + command.config_to_str(false, false);
   metadata["commit"] = OSTEON_COMMIT;
   metadata["seed"] = std::to_string(a.options.seed);
@@ -129,7 +138,8 @@ void run(const CLI::App& command, Task task, Arguments a) {
   if (a.no_augmentation) a.options.augment = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   a.options.task.run.device = at::Device(a.device);
   a.options.task.run.engine = a.options.task.run.device.is_cpu() ? train::Engine::fused : train::Engine::plain;
-  const auto training = examples_of(a.data, task), validation = examples_of(a.validation, task);
+  const auto training = examples_of(a.data, task);
+  const auto validation = a.validation.empty() ? std::vector<dataset::Example>{} : examples_of({a.validation}, task);
   train::Trainer trainer(task, a.options, starting_model(task, a));
   if (a.resume) trainer.resume();
   std::fprintf(stderr, "%s: %zu characters, %zu for validation, %llu parameters\n", command.get_name().c_str(), training.size(),

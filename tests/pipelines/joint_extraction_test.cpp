@@ -155,7 +155,7 @@ TEST(JointExtraction, nothing_attended_to_gives_no_joints) {
 
 TEST(JointExtraction, detail_runs_from_the_coarsest_to_the_finest_bandwidth) {
   EXPECT_FLOAT_EQ(bandwidth_of_detail(0.0f), kCoarsestBandwidth);
-  EXPECT_FLOAT_EQ(bandwidth_of_detail(0.5f), kLearnedBandwidth);
+  EXPECT_FLOAT_EQ(bandwidth_of_detail(0.5f), kDefaultBandwidth);
   EXPECT_FLOAT_EQ(bandwidth_of_detail(1.0f), kFinestBandwidth);
   const JointCandidates seen = candidates_around(figure(), 90, 0.03f, 13);
   std::size_t before = 0;

@@ -159,7 +159,7 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   const float h = options.bandwidth;
   const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step}).points;
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
-  prune(modes, options.min_share);
+  prune(modes, options.min_share * h / kDefaultBandwidth);
   for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
   out.explained = explained_share(out.joints, shifted, votes.weights, h);
   return out;
@@ -171,8 +171,8 @@ float geometric(float from, float to, float t) { return from * std::pow(to / fro
 
 float bandwidth_of_detail(float detail) {
   assert(detail >= 0.0f && detail <= 1.0f);
-  return detail < 0.5f ? geometric(kCoarsestBandwidth, kLearnedBandwidth, 2.0f * detail)
-                       : geometric(kLearnedBandwidth, kFinestBandwidth, 2.0f * detail - 1.0f);
+  return detail < 0.5f ? geometric(kCoarsestBandwidth, kDefaultBandwidth, 2.0f * detail)
+                       : geometric(kDefaultBandwidth, kFinestBandwidth, 2.0f * detail - 1.0f);
 }
 
 JointExtraction extract_joints(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const std::optional<Plane>& symmetry,

@@ -10,10 +10,11 @@
 
 namespace osteon::pipelines {
 
-// The level of detail of the paper: the bandwidth may be anything in this range; in the middle is the one that training found.
-constexpr float kFinestBandwidth = 0.01f, kLearnedBandwidth = 0.0429f, kCoarsestBandwidth = 0.1f;
+// The level of detail of the paper: the bandwidth may be anything in this range; in the middle is the one that gives the best skeletons of
+// the validation characters.
+constexpr float kFinestBandwidth = 0.01f, kDefaultBandwidth = 0.04f, kCoarsestBandwidth = 0.1f;
 
-// Detail 0 is the coarsest bandwidth, 0.5 the learned one, 1 the finest, geometric in between. Pre: 0 <= detail <= 1.
+// Detail 0 is the coarsest bandwidth, 0.5 the default, 1 the finest, geometric in between. Pre: 0 <= detail <= 1.
 float bandwidth_of_detail(float detail);
 
 // Where the networks see joints: every vertex of the working mesh, displaced, with its attention.
@@ -23,10 +24,11 @@ struct JointCandidates {
 };
 
 struct JointExtractionOptions {
-  float bandwidth = kLearnedBandwidth;
+  float bandwidth = kDefaultBandwidth;
   float step = 0.3f;             // of the mean shift
   float min_attention = 1e-3f;   // candidates below are ignored
-  float min_share = 2e-3f;       // a joint gathers at least this share of all attention within its bandwidth
+  float min_share = 4e-3f;       // a joint gathers at least this share of all attention within the default bandwidth; proportionally less
+                                 // within a finer one
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
                                  // other side's attention
 };
@@ -48,7 +50,7 @@ struct JointExtraction {
 JointExtraction extract_joints(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const std::optional<Plane>& symmetry,
                                const JointExtractionOptions& options = {});
 
-// The same with the bandwidth in the whole range whose number of joints is nearest to `count` (ties: nearest to the learned bandwidth).
+// The same with the bandwidth in the whole range whose number of joints is nearest to `count` (ties: nearest to the default bandwidth).
 JointExtraction extract_joint_count(const JointCandidates& candidates, const geometry::VoxelGrid& voxels,
                                     const std::optional<Plane>& symmetry, std::size_t count, const JointExtractionOptions& options = {});
 

@@ -35,7 +35,7 @@ struct RignetResult {
 };
 
 // Below this confidence a rig should not be used unseen.
-constexpr float kLowConfidence = 0.15f;
+constexpr float kLowConfidence = 0.25f;
 
 // The whole of RigNet: Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
 // mesh -> clean working mesh -> displacement and attention -> joints -> tree -> skin -> weights on the mesh that was given.

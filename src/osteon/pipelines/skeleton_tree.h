@@ -22,7 +22,7 @@ struct TreeEvidence {
 Matrix samples_outside(std::span<const Vec3f> joints, const geometry::VoxelGrid& voxels);
 
 struct TreeOptions {
-  float outside_penalty = 0.2f;  // added to a bone's cost for each sample outside beyond the first
+  float outside_penalty = 0.5f;  // added to a bone's cost for each sample outside beyond the first
   float middle_discount = 0.5f;  // factor on the cost of a bone in the symmetry plane
 };
 

@@ -11,6 +11,7 @@
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/pack.h"
 #include "osteon/train/trainer.h"
+#include "osteon_commit.h"
 #include "training_log.h"
 
 namespace osteon::app {

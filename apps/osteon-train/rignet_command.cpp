@@ -32,7 +32,7 @@ struct Arguments {
   double bandwidth = 0.04;
   train::TrainOptions options;
 
-  Arguments() { options.task.run.norm = {.momentum = 0.05, .largest_stretch = 3.0, .largest_offset = 5.0}; }
+  Arguments() { options.task.run.norm = {.momentum = 0.01, .largest_stretch = 10.0, .largest_offset = 10.0}; }
 };
 
 void add_common_options(CLI::App& command, Arguments& a) {

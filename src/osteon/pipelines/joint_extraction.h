@@ -27,8 +27,8 @@ struct JointExtractionOptions {
   float bandwidth = kDefaultBandwidth;
   float step = 0.3f;             // of the mean shift
   float min_attention = 1e-3f;   // candidates below are ignored
-  float min_share = 3.5e-3f;     // a joint gathers at least this share of all attention within the default bandwidth; proportionally less
-                                 // within a finer one
+  float min_share = 3.5e-3f;     // a joint gathers at least this share of all attention within the default bandwidth; in proportion
+                                 // less within a finer one and more within a coarser one
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
                                  // other side's attention
 };

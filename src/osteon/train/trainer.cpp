@@ -101,7 +101,8 @@ dataset::Batch Trainer::batch_of(const std::vector<dataset::Example>& train, con
 // figures begin as plain means.
 NormRule Trainer::norm_rule() const {
   const NormRule& full = options_.task.run.norm;
-  const double begun = (static_cast<double>(step_) - options_.renormalise_from) / (options_.renormalise_to - options_.renormalise_from);
+  constexpr double from = 100.0, to = 600.0;  // steps: after these the running figures of momentum 0.01 are averages worth correcting to
+  const double begun = (static_cast<double>(step_) - from) / (to - from);
   const double t = std::clamp(begun, 0.0, 1.0);
   return {std::max(full.momentum, 1.0 / static_cast<double>(step_ + 1)), 1.0 + t * (full.largest_stretch - 1.0), t * full.largest_offset};
 }

@@ -24,8 +24,7 @@ struct TrainOptions {
   double minutes = 0.0;         // ... or after this time, whichever is given (0: not)
   std::uint64_t seed = 1;
   double report_seconds = 15.0;
-  double validate_seconds = 300.0;                          // how often to look at the validation characters; at the end always
-  double renormalise_from = 100.0, renormalise_to = 600.0;  // steps between which the corrections of batch renormalisation grow
+  double validate_seconds = 300.0;  // how often to look at the validation characters; at the end always
   double checkpoint_seconds = 120.0;
   std::filesystem::path checkpoint;  // empty: none are written
 };

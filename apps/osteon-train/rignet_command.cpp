@@ -17,6 +17,7 @@
 namespace osteon::app {
 namespace {
 
+using nets::rignet::name_of;
 using nets::rignet::Network;
 using train::Task;
 namespace fs = std::filesystem;
@@ -58,6 +59,12 @@ void add_common_options(CLI::App& command, Arguments& a) {
       ->capture_default_str();
   command.add_option("--neighbours", a.options.task.batch.neighbours, "Geodesic neighbours of a vertex")->capture_default_str();
   command.add_flag("--no-augmentation", a.no_augmentation, "Show every character as it is");
+  auto& articulate = a.options.augment.articulate;
+  command.add_option("--articulate", articulate.probability, "How often a character is bent and scaled through its rig")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--bend", articulate.largest_bend, "Largest standard deviation of joint angles, radians")->capture_default_str();
+  command.add_option("--proportion", articulate.proportion, "Standard deviation of the logarithm of a part's size")->capture_default_str();
   command.add_option("--seed", a.options.seed)->capture_default_str();
   command.add_option("--device", a.device, "cpu, cuda or cuda:N")->capture_default_str();
   command.add_option("--threads", a.threads, "CPU threads (default: all cores)")->check(CLI::Range(1, 1024));
@@ -68,17 +75,18 @@ void add_common_options(CLI::App& command, Arguments& a) {
   command.add_option("--validate-seconds", a.options.validate_seconds)->capture_default_str();
 }
 
+void add_collapse_options(CLI::App& command, Arguments& a) {
+  command.add_option("--bandwidth", a.bandwidth, "Bandwidth to start from")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")->capture_default_str();
+  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
+}
+
 void add_combined_options(CLI::App& command, Arguments& a) {
   auto* combined =
       command.add_flag("--combined", a.combined, "Train displacement, attention and bandwidth together, through the mean shift");
   command.add_option("--attention", a.attention, "Attention weights to start from")->check(CLI::ExistingFile)->needs(combined);
   command.add_option("--attention-out", a.attention_out, "Where the attention's weights go")->needs(combined);
-  command.add_option("--bandwidth", a.bandwidth, "Bandwidth to start from")
-      ->check(CLI::PositiveNumber)
-      ->needs(combined)
-      ->capture_default_str();
-  command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")->capture_default_str();
-  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
+  add_collapse_options(command, a);
 }
 
 std::vector<dataset::Example> examples_of(const std::vector<fs::path>& files, Task task) {
@@ -86,17 +94,17 @@ std::vector<dataset::Example> examples_of(const std::vector<fs::path>& files, Ta
   for (const fs::path& file : files) std::ranges::move(dataset::load_characters(file), std::back_inserter(characters));
   if (task == Task::bones || task == Task::root) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
   if (characters.empty()) throw Error("{}: no characters to learn from", files.front().string());
-  return dataset::examples_of(std::move(characters));
+  return dataset::examples_of(std::move(characters), train::parts_of(task));
 }
 
 train::Model starting_model(Task task, const Arguments& a) {
   train::Model model = train::fresh_model(task, a.options.seed);
-  for (const Network network : {Network::joints, Network::attention, Network::bones, Network::root, Network::skin}) {
+  for (const Network network : nets::rignet::kNetworks) {
     const bool second = task == Task::collapse && network == Network::attention;
     const fs::path& file = second ? a.attention : a.init;
-    if (model.parts.contains(train::name_of(network)) && !file.empty()) model[train::name_of(network)] = train::load_weights(file, network);
+    if (model.parts.contains(name_of(network)) && !file.empty()) model[name_of(network)] = train::load_weights(file, network);
   }
-  if (task == Task::collapse) model["bandwidth"].at("h").fill_(a.bandwidth);
+  if (model.parts.contains("bandwidth")) model["bandwidth"].at("h").fill_(a.bandwidth);
   return model;
 }
 
@@ -121,9 +129,9 @@ std::map<std::string, std::string> metadata_of(const CLI::App& command, const Ar
 
 void save_weights(const CLI::App& command, const Arguments& a, Task task, train::Model& model, const train::TrainResult& result) {
   auto metadata = metadata_of(command, a, result);
-  if (task == Task::collapse) metadata["bandwidth"] = fmt::format("{}", model["bandwidth"].at("h").item<float>());
-  for (const Network network : {Network::joints, Network::attention, Network::bones, Network::root, Network::skin}) {
-    const std::string name = train::name_of(network);
+  if (model.parts.contains("bandwidth")) metadata["bandwidth"] = fmt::format("{}", model["bandwidth"].at("h").item<float>());
+  for (const Network network : nets::rignet::kNetworks) {
+    const std::string name = name_of(network);
     if (!model.parts.contains(name)) continue;
     const fs::path& file = task == Task::collapse && network == Network::attention ? a.attention_out : a.out;
     if (!file.empty()) train::save_weights(file, model[name], metadata);
@@ -136,7 +144,7 @@ void run(const CLI::App& command, Task task, Arguments a) {
     set_threads(a.threads);
   }
   if (a.combined) task = Task::collapse;
-  if (a.no_augmentation) a.options.augment = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  if (a.no_augmentation) a.options.augment = dataset::AugmentOptions::none();
   a.options.task.run.device = at::Device(a.device);
   a.options.task.run.engine = a.options.task.run.device.is_cpu() ? train::Engine::fused : train::Engine::plain;
   const auto training = examples_of(a.data, task);
@@ -157,17 +165,20 @@ void add_command(CLI::App& app, Task task, const char* name, const char* descrip
   auto arguments = std::make_shared<Arguments>();
   add_common_options(*command, *arguments);
   if (task == Task::joints) add_combined_options(*command, *arguments);
+  if (task == Task::votes) add_collapse_options(*command, *arguments);
   command->callback([command, task, arguments] { run(*command, task, *arguments); });
 }
 
 }  // namespace
 
 void add_rignet_commands(CLI::App& app) {
+  add_command(app, Task::votes, "rignet.votes", "How far each vertex is from a joint and how well it can tell, in one network (the default)");
   add_command(app, Task::attention, "rignet.attention", "Where on the surface the joints are");
   add_command(app, Task::joints, "rignet.joints", "How far each vertex is from a joint; --combined: the whole joint stage");
   add_command(app, Task::bones, "rignet.bones", "Which joints a bone connects");
   add_command(app, Task::root, "rignet.root", "Which joint is the root");
-  add_command(app, Task::skin, "rignet.skin", "How vertices follow their nearest bones");
+  add_command(app, Task::bind, "rignet.bind", "How vertices follow the bones near them (the default)");
+  add_command(app, Task::skin, "rignet.skin", "The same by the paper's network");
 }
 
 }  // namespace osteon::app

@@ -7,7 +7,7 @@
 
 namespace osteon::app {
 
-// rignet.attention, rignet.joints, rignet.bones, rignet.root, rignet.skin
+// rignet.votes, rignet.attention, rignet.joints, rignet.bones, rignet.root, rignet.skin
 void add_rignet_commands(CLI::App& app);
 
 }  // namespace osteon::app

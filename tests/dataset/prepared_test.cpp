@@ -73,7 +73,7 @@ TEST_F(PreparedCapsule, marks_rings_around_the_joints) {
 TEST_F(PreparedCapsule, gives_the_skin_network_nearest_bones_and_their_weights) {
   const PreparedCharacter& c = character();
   const auto inputs = skin_inputs(c, 3);
-  const auto targets = skin_targets(c, inputs);
+  const auto targets = skin_targets(c, inputs.nearest);
   EXPECT_EQ(inputs.features.cols(), 3 + 3 * geometry::kBoneFeatures);
   for (float covered : targets.covered) EXPECT_NEAR(covered, 1.0f, 1e-5f);  // all bones are among three
   for (Eigen::Index v = 0; v < inputs.nearest.rows(); ++v) EXPECT_EQ(inputs.nearest.row(v), c.nearest_bones.row(v));

@@ -17,11 +17,9 @@
 namespace osteon::test {
 
 using nets::rignet::Network;
-inline constexpr Network all_networks[] = {Network::joints, Network::attention, Network::bones, Network::root, Network::skin};
 
 inline std::string name_of(const testing::TestParamInfo<Network>& network) {
-  constexpr const char* names[] = {"joints", "attention", "bones", "root", "skin"};
-  return names[static_cast<std::size_t>(network.param)];
+  return nets::rignet::name_of(network.param);
 }
 
 // Weights of about the size that training starts from; normalisations of both signs, means and variances that are not 0 and 1.

@@ -12,20 +12,17 @@ namespace {
 using test::Network;
 using testing::HasSubstr;
 
-constexpr std::array<std::pair<Network, const char*>, 5> files{{{Network::joints, "joints"},
-                                                                {Network::attention, "attention"},
-                                                                {Network::bones, "bones"},
-                                                                {Network::root, "root"},
-                                                                {Network::skin, "skin"}}};
+// Models with seeded weights, written to and read from files.
+RignetModels models_with(std::initializer_list<Network> networks) {
+  const test::TemporaryFolder folder;
+  for (const Network network : networks)
+    save_safetensors(folder / (std::string(nets::rignet::name_of(network)) + ".safetensors"),
+                     test::random_weights(nets::rignet::parameter_shapes(network), 1));
+  return RignetModels::load(folder.path());
+}
 
-// Models with seeded weights, written to and read from files once for all tests.
 const RignetModels& models() {
-  static const RignetModels loaded = [] {
-    const test::TemporaryFolder folder;
-    for (const auto& [network, name] : files)
-      save_safetensors(folder / (std::string(name) + ".safetensors"), test::random_weights(nets::rignet::parameter_shapes(network), 1));
-    return RignetModels::load(folder.path());
-  }();
+  static const RignetModels loaded = models_with({Network::votes, Network::bones, Network::root, Network::skin});
   return loaded;
 }
 
@@ -35,10 +32,16 @@ Matrix matrix_of(const std::vector<float>& values, Eigen::Index columns) {
 
 TEST(RignetModels, attention_and_probabilities_lie_between_0_and_1) {
   const test::ExampleInput input = test::one_mesh(120, 7, 2);
-  const Matrix attention = models().attention(input.mesh);
-  EXPECT_EQ(attention.rows(), 120);
-  EXPECT_GE(attention.minCoeff(), 0);
-  EXPECT_LE(attention.maxCoeff(), 1);
+  const RignetModels paper = models_with({Network::joints, Network::attention, Network::bones, Network::root, Network::skin});
+  for (const RignetModels* model : {&models(), &paper}) {
+    const JointVotes votes = model->votes(input.mesh);
+    EXPECT_EQ(votes.attention.rows(), 120);
+    EXPECT_EQ(votes.attention.cols(), 1);
+    EXPECT_GE(votes.attention.minCoeff(), 0);
+    EXPECT_LE(votes.attention.maxCoeff(), 1);
+    EXPECT_EQ(votes.displacement.rows(), 120);
+    EXPECT_EQ(votes.displacement.cols(), 3);
+  }
   const Matrix bones = models().bone_probabilities(input.mesh, input.joints, matrix_of(input.pairs.features, 8));
   EXPECT_EQ(bones.rows(), 21);
   EXPECT_GE(bones.minCoeff(), 0);
@@ -46,7 +49,6 @@ TEST(RignetModels, attention_and_probabilities_lie_between_0_and_1) {
   const Matrix roots = models().root_probabilities(input.mesh, input.joints);
   EXPECT_EQ(roots.rows(), 7);
   EXPECT_NEAR(roots.sum(), 1, 1e-5f);
-  EXPECT_EQ(models().displacement(input.mesh).cols(), 3);
 }
 
 TEST(RignetModels, a_bone_is_as_likely_from_either_of_its_ends) {
@@ -75,10 +77,10 @@ TEST(RignetModels, skin_weights_sum_to_1_over_the_bones_that_there_are) {
 
 TEST(RignetModels, may_be_used_by_two_threads_at_once) {
   const test::ExampleInput input = test::one_mesh(100, 3, 6);
-  const Matrix expected = models().displacement(input.mesh);
+  const Matrix expected = models().votes(input.mesh).displacement;
   Matrix other;
-  std::thread thread([&] { other = models().displacement(input.mesh); });
-  const Matrix own = models().displacement(input.mesh);
+  std::thread thread([&] { other = models().votes(input.mesh).displacement; });
+  const Matrix own = models().votes(input.mesh).displacement;
   thread.join();
   EXPECT_TRUE(test::same_bits(own, expected));
   EXPECT_TRUE(test::same_bits(other, expected));
@@ -88,7 +90,7 @@ TEST(RignetModels, every_missing_file_is_named) {
   const test::TemporaryFolder folder;
   save_safetensors(folder / "root.safetensors", {});
   const std::string error = test::error_of([&] { RignetModels::load(folder.path()); });
-  for (const char* name : {"joints", "attention", "bones", "skin"})
+  for (const char* name : {"votes", "bones", "skin"})
     EXPECT_THAT(error, HasSubstr((folder / name).string() + ".safetensors"));
   EXPECT_THAT(error, testing::Not(HasSubstr("root.safetensors")));
 }

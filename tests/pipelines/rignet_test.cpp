@@ -37,13 +37,9 @@ void write_random(const std::filesystem::path& path, Network network, std::uint6
 const infer::RignetModels& untrained() {
   static const infer::RignetModels models = [] {
     const test::TemporaryFolder folder;
-    const std::pair<const char*, Network> files[] = {{"attention", Network::attention},
-                                                     {"joints", Network::joints},
-                                                     {"bones", Network::bones},
-                                                     {"root", Network::root},
-                                                     {"skin", Network::skin}};
     std::uint64_t seed = 1;
-    for (const auto& [name, network] : files) write_random(folder / (std::string(name) + ".safetensors"), network, seed++);
+    for (const Network network : {Network::attention, Network::joints, Network::bones, Network::root, Network::skin})
+      write_random(folder / (std::string(nets::rignet::name_of(network)) + ".safetensors"), network, seed++);
     return infer::RignetModels::load(folder.path());
   }();
   return models;

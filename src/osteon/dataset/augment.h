@@ -5,6 +5,7 @@
 
 #include "osteon/base/random.h"
 #include "osteon/base/types.h"
+#include "osteon/dataset/articulate.h"
 
 namespace osteon::dataset {
 
@@ -14,6 +15,9 @@ struct AugmentOptions {
   float yaw = 0.2f;           // largest small turn about y, radians
   float tilt = 0.07f;         // largest turns about x and z
   float stretch = 0.12f;      // each axis is scaled by exp(u), |u| <= stretch
+  ArticulateOptions articulate = {};
+
+  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}}; }
 };
 
 // An affine map of a character: its labels stay true.

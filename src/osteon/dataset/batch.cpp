@@ -12,23 +12,50 @@
 namespace osteon::dataset {
 namespace {
 
-std::vector<float> plane_distances(const PreparedCharacter& character) {
-  const Plane plane = geometry::symmetry_plane(character.mesh).value_or(Plane{Vec3f::UnitX(), 0.0f});
+std::vector<float> plane_distances(const Skeleton& skeleton, const std::optional<Plane>& symmetry) {
+  const Plane plane = symmetry.value_or(Plane{Vec3f::UnitX(), 0.0f});
   std::vector<float> distances;
-  for (const Vec3f& p : character.skeleton.rest_positions) distances.push_back(std::abs(plane.signed_distance(p)));
+  for (const Vec3f& p : skeleton.rest_positions) distances.push_back(std::abs(plane.signed_distance(p)));
   return distances;
 }
 
-Example example_of(PreparedCharacter character) {
+// The nearest bones (V,8), one for each joint: -1 where there are no more.
+geometry::IndexMatrix bind_choices(const PreparedCharacter& character) {
+  geometry::IndexMatrix out = geometry::IndexMatrix::Constant(character.nearest_bones.rows(), geometry::kBindBones, -1);
+  for (Eigen::Index v = 0; v < out.rows(); ++v)
+    for (Eigen::Index k = 0; k < std::min(out.cols(), character.nearest_bones.cols()); ++k)
+      if (std::isfinite(character.nearest_distances(v, k))) out(v, k) = character.nearest_bones(v, k);
+  return out;
+}
+
+Example example_of(PreparedCharacter character, Parts parts, const std::optional<Plane>& symmetry) {
   Example example;
-  example.pair_features = geometry::pair_features(character.skeleton.rest_positions.raw(), character.voxels);
-  example.pair_labels = pair_labels(character.skeleton);
-  example.plane_distance = plane_distances(character);
-  const geometry::SkinInputs inputs = skin_inputs(character);
-  example.skin_features = inputs.features;
-  example.skin_targets = skin_targets(character, inputs);
+  example.symmetry = symmetry;
+  example.plane_distance = plane_distances(character.skeleton, example.symmetry);
+  if (parts == Parts::pairs) {
+    example.pair_features = geometry::pair_features(character.skeleton.rest_positions.raw(), character.voxels);
+    example.pair_labels = pair_labels(character.skeleton);
+  }
+  if (parts == Parts::skin) {
+    const geometry::SkinInputs inputs = skin_inputs(character);
+    example.skin_features = inputs.features;
+    example.skin_targets = skin_targets(character, inputs.nearest);
+  }
+  if (parts == Parts::bind) {
+    example.choices = bind_choices(character);
+    example.skin_targets = skin_targets(character, example.choices);
+  }
   example.character = std::move(character);
   return example;
+}
+
+// The example itself, or one made of it through its rig, which is then kept in `made`.
+const Example& varied(const Example& example, Parts parts, const ArticulateOptions& options, Random& random, std::optional<Example>& made) {
+  if (random.uniform() >= options.probability || example.character.joints() < 2) return example;
+  const Articulation articulation = random_articulation(example.character.skeleton, example.symmetry, options, random);
+  PreparedCharacter changed = articulated(example.character, articulation, parts);
+  const auto symmetry = parts == Parts::pairs ? geometry::symmetry_plane(changed.mesh) : example.symmetry;  // the others do not read it
+  return made.emplace(example_of(std::move(changed), parts, symmetry));
 }
 
 void append(std::vector<float>& to, const Vec3f& p) { to.insert(to.end(), {p.x(), p.y(), p.z()}); }
@@ -86,6 +113,11 @@ void add_pair(Batch& batch, const Example& example, const Pair& pair, const Plac
   batch.targets.connected.push_back(example.pair_labels[static_cast<std::size_t>(pair.row)]);
 }
 
+void add_skin_targets(Batch& batch, const geometry::SkinTargets& targets) {
+  batch.targets.skin.insert(batch.targets.skin.end(), targets.weights.data(), targets.weights.data() + targets.weights.size());
+  batch.targets.skin_share.insert(batch.targets.skin_share.end(), targets.covered.begin(), targets.covered.end());
+}
+
 // Positions and bone ends move with the placement, proximities with the distances.
 void add_skin(Batch& batch, const Example& example, const Placement& placement) {
   std::vector<float>& out = batch.inputs.skin_features;
@@ -99,18 +131,33 @@ void add_skin(Batch& batch, const Example& example, const Placement& placement) 
       out.push_back(features(v, column + 7));
     }
   }
-  const Matrix& weights = example.skin_targets.weights;
-  batch.targets.skin.insert(batch.targets.skin.end(), weights.data(), weights.data() + weights.size());
-  const auto& covered = example.skin_targets.covered;
-  batch.targets.skin_share.insert(batch.targets.skin_share.end(), covered.begin(), covered.end());
+  add_skin_targets(batch, example.skin_targets);
+}
+
+// The features of the character as it is placed: of its bones, vertices and normals, and distances that grew with it.
+void add_choices(Batch& batch, const Example& example, const Placement& placement) {
+  const PreparedCharacter& character = example.character;
+  std::vector<Vec3f> positions, normals = vertex_normals(character.mesh).raw();
+  for (const Vec3f& p : character.mesh.positions) positions.push_back(placement.apply(p));
+  const Eigen::Matrix3f of_normals = placement.linear.inverse().transpose();
+  for (Vec3f& n : normals) n = (of_normals * n).normalized();
+  geometry::BoneList bones = bone_list(character.skeleton);
+  for (Segment& s : bones.segments) s = {placement.apply(s.a), placement.apply(s.b)};
+  const geometry::BindInputs inputs =
+      geometry::bind_inputs(positions, normals, bones, example.choices, placement.length_scale * character.nearest_distances);
+  batch.inputs.choices.add(inputs.features, inputs.offsets);
+  add_skin_targets(batch, example.skin_targets);
 }
 
 }  // namespace
 
-std::vector<Example> examples_of(std::vector<PreparedCharacter> characters) {
+std::vector<Example> examples_of(std::vector<PreparedCharacter> characters, Parts parts) {
   std::vector<Example> examples(characters.size());
   parallel_for(characters.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) examples[i] = example_of(std::move(characters[i]));
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto symmetry = geometry::symmetry_plane(characters[i].mesh);
+      examples[i] = example_of(std::move(characters[i]), parts, symmetry);
+    }
   });
   return examples;
 }
@@ -145,16 +192,19 @@ std::vector<std::size_t> draw(std::span<const double> weights, std::size_t count
 
 Batch training_batch(std::span<const Example* const> examples, const BatchOptions& options, const AugmentOptions& augment, Random& random) {
   Batch batch;
-  for (const Example* example : examples) {
-    const PreparedCharacter& character = example->character;
+  for (const Example* original : examples) {
+    std::optional<Example> made;
+    const Example& example = varied(*original, options.parts, augment.articulate, random, made);
+    const PreparedCharacter& character = example.character;
     const Placement placement = random_placement(character.mesh.positions.raw(), augment, random);
     add_mesh(batch.inputs.mesh, character, placement, geometry::drawn(character.balls, options.neighbours, random));
-    add_joints(batch, *example, placement);
-    if (options.parts == Parts::skin) add_skin(batch, *example, placement);
+    add_joints(batch, example, placement);
+    if (options.parts == Parts::skin) add_skin(batch, example, placement);
+    if (options.parts == Parts::bind) add_choices(batch, example, placement);
     if (options.parts != Parts::pairs) continue;
-    for (Pair pair : pairs_of(*example)) {
+    for (Pair pair : pairs_of(example)) {
       if (random.uniform() < 0.5f) std::swap(pair.first, pair.second);
-      add_pair(batch, *example, pair, placement);
+      add_pair(batch, example, pair, placement);
     }
   }
   return batch;
@@ -167,6 +217,7 @@ Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& 
     add_mesh(batch.inputs.mesh, character, {}, geometry::evenly(character.balls, options.neighbours));
     add_joints(batch, *example, {});
     if (options.parts == Parts::skin) add_skin(batch, *example, {});
+    if (options.parts == Parts::bind) add_choices(batch, *example, {});
     if (options.parts != Parts::pairs) continue;
     const std::vector<Pair> pairs = pairs_of(*example);
     for (const Pair& pair : pairs) add_pair(batch, *example, pair, {});

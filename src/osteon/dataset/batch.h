@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,14 +15,16 @@ namespace osteon::dataset {
 // A character and what the batches need again and again.
 struct Example {
   PreparedCharacter character;
-  Matrix pair_features;                   // (P,8)
-  std::vector<std::uint8_t> pair_labels;  // (P)
+  std::optional<Plane> symmetry;          // of the mesh
   std::vector<float> plane_distance;      // (J) to the plane of symmetry, or |x| where there is none
-  Matrix skin_features;                   // (V,43)
-  geometry::SkinTargets skin_targets;     // (V,5) and (V)
+  Matrix pair_features;                   // (P,8); pairs only
+  std::vector<std::uint8_t> pair_labels;  // (P); pairs only
+  Matrix skin_features;                   // (V,43); skin only
+  geometry::IndexMatrix choices;          // (V,8) the bones that each vertex may follow, -1: none; bind only
+  geometry::SkinTargets skin_targets;     // skin: (V,5) and (V); bind: (V,8) and (V), 0 where there are fewer bones
 };
 
-std::vector<Example> examples_of(std::vector<PreparedCharacter> characters);  // in parallel
+std::vector<Example> examples_of(std::vector<PreparedCharacter> characters, Parts parts);  // in parallel
 
 // How often to draw each: groups of alike characters count with the root of their size, then categories with the root of theirs. Sum 1.
 std::vector<double> sampling_weights(std::span<const Example> examples);
@@ -33,7 +36,7 @@ struct BatchTargets {
   std::vector<float> attention;         // (V) 0 or 1
   std::vector<std::int32_t> root;       // (M) row of each mesh's root joint
   std::vector<float> connected;         // (P) 0 or 1
-  std::vector<float> skin, skin_share;  // (V,5), rows sum to 1 or are 0; (V) which part of the vertex's weight these five can carry
+  std::vector<float> skin, skin_share;  // (V,5), bind: (V,8), rows sum to 1 or are 0; (V) which part of the vertex's weight these can carry
 };
 
 struct Batch {
@@ -41,15 +44,12 @@ struct Batch {
   BatchTargets targets;
 };
 
-// Which parts beside the mesh to fill in.
-enum class Parts { joints, pairs, skin };
-
 struct BatchOptions {
   Parts parts = Parts::joints;  // joints: attention too; pairs: joints too
   std::size_t neighbours = 10;  // geodesic ones of a vertex
 };
 
-// For training: every character placed anew, neighbours drawn anew, each pair of joints in random order.
+// For training: every character changed through its rig and placed anew, neighbours drawn anew, each pair of joints in random order.
 Batch training_batch(std::span<const Example* const> examples, const BatchOptions& options, const AugmentOptions& augment, Random& random);
 
 // For validation: nothing random; neighbours spread evenly; of each mesh first all pairs i < j, then the same as j, i.

@@ -62,6 +62,12 @@ void keep_nearest(const Matrix& distances, int most, PreparedCharacter& out) {
   }
 }
 
+void find_nearest_bones(int most, PreparedCharacter& out) {
+  const std::vector<Bone> all_bones = bones(out.skeleton);
+  const Matrix distances = geometry::volumetric_geodesic_distance(out.mesh, out.voxels, segments(all_bones));
+  keep_nearest(geometry::one_bone_per_joint(distances, starts(all_bones)), most, out);
+}
+
 void note_oddities(const Skeleton& original, PreparedCharacter& out) {
   const std::size_t merged = original.size() - out.joints();
   if (merged > 0) out.notes.push_back(fmt::format("{} joints merged with one at the same place", merged));
@@ -78,6 +84,15 @@ void derive_inputs(PreparedCharacter& character) {
   character.voxels = geometry::voxelize(character.mesh);
 }
 
+void derive_from_shape(PreparedCharacter& character, Parts parts) {
+  character.balls = geometry::geodesic_balls(character.mesh);
+  const std::vector<Vec3f>& joints = character.skeleton.rest_positions.raw();
+  if (parts == Parts::joints) character.attention = geometry::attention_labels(character.mesh, joints, parent_indices(character.skeleton));
+  if (parts != Parts::joints) character.voxels = geometry::voxelize(character.mesh);
+  if (parts == Parts::skin || parts == Parts::bind)
+    find_nearest_bones(static_cast<int>(character.nearest_bones.cols()), character);
+}
+
 PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptions& options) {
   validate(rig);
   PreparedCharacter out;
@@ -92,13 +107,11 @@ PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptio
   const TriangleMesh original = normalised(rig.mesh, out.normalization);
   out.weights = weights_at(out.mesh.positions.raw(), original, rig.weights, merged.from_original);
 
-  const std::vector<Bone> all_bones = bones(out.skeleton);
   const std::vector<Vec3f>& joints = out.skeleton.rest_positions.raw();
   const std::vector<int> parents = parent_indices(out.skeleton);
   out.attention = geometry::attention_labels(out.mesh, joints, parents);
   out.tolerances = PerJoint<float>(geometry::joint_tolerances(out.mesh, joints, parents));
-  const Matrix distances = geometry::volumetric_geodesic_distance(out.mesh, out.voxels, segments(all_bones));
-  keep_nearest(geometry::one_bone_per_joint(distances, starts(all_bones)), options.nearest_bones, out);
+  find_nearest_bones(options.nearest_bones, out);
   note_oddities(rig.skeleton, out);
   return out;
 }
@@ -115,12 +128,22 @@ geometry::SkinInputs skin_inputs(const PreparedCharacter& character, int k) {
   return geometry::skin_inputs(character.mesh.positions.raw(), segments(all_bones), leaf_flags(all_bones), distances, k);
 }
 
-geometry::SkinTargets skin_targets(const PreparedCharacter& character, const geometry::SkinInputs& inputs) {
+geometry::BoneList bone_list(const Skeleton& skeleton) {
+  geometry::BoneList list;
+  for (const Bone& bone : bones(skeleton)) {
+    list.segments.push_back(bone.segment);
+    list.starts.push_back(static_cast<int>(bone.start));
+    list.ends.push_back(bone.end ? static_cast<int>(*bone.end) : -1);
+  }
+  return list;
+}
+
+geometry::SkinTargets skin_targets(const PreparedCharacter& character, const geometry::IndexMatrix& nearest) {
   Matrix joint_weights = Matrix::Zero(static_cast<Eigen::Index>(character.vertices()), static_cast<Eigen::Index>(character.joints()));
   for (VertexId v : character.mesh.positions.ids())
     for (const Influence& i : character.weights[v])
       joint_weights(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(i.joint)) = i.weight;
-  return geometry::skin_targets(joint_weights, starts(bones(character.skeleton)), inputs.nearest);
+  return geometry::skin_targets(joint_weights, starts(bones(character.skeleton)), nearest);
 }
 
 std::vector<std::uint8_t> pair_labels(const Skeleton& skeleton) {

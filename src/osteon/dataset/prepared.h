@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "osteon/geometry/bind_features.h"
 #include "osteon/geometry/neighbourhoods.h"
 #include "osteon/geometry/rignet_features.h"
 #include "osteon/geometry/voxel_grid.h"
@@ -54,14 +55,24 @@ struct PreparedCharacter {
 // Throws Error when the rig is invalid or has no surface to work on.
 PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptions& options = {});
 
-// Fills one_ring, balls and voxels from the mesh (prepare() and loading do so; call it after moving the vertices).
+// Which parts of a character, beside its mesh and joints, a network learns from.
+enum class Parts { joints, pairs, skin, bind };  // joints: attention too; pairs: of joints; skin, bind: bones and weights
+
+// Fills one_ring, balls and voxels from the mesh (prepare() and loading do so).
 void derive_inputs(PreparedCharacter& character);
+
+// After vertices and joints have moved, the faces being the same: everything that follows from them and that `parts` reads. Joints:
+// balls and attention; pairs: balls and voxels; skin and bind: balls, voxels and the nearest bones, as many as there were.
+void derive_from_shape(PreparedCharacter& character, Parts parts);
 
 // Inputs of the skin network, (V, 3 + 8k); pre: k <= options.nearest_bones of its preparation.
 geometry::SkinInputs skin_inputs(const PreparedCharacter& character, int k = 5);
 
-// Targets of the skin network for those inputs (facts 7.5).
-geometry::SkinTargets skin_targets(const PreparedCharacter& character, const geometry::SkinInputs& inputs);
+// Targets of the skin network for bones of those inputs, or of the binding network for `nearest_bones` (facts 7.5).
+geometry::SkinTargets skin_targets(const PreparedCharacter& character, const geometry::IndexMatrix& nearest);
+
+// The bones of the skeleton, as the binding network's features read them.
+geometry::BoneList bone_list(const Skeleton& skeleton);
 
 // 1 where joints i < j are parent and child, in the order of geometry::pair_features: (0,1), (0,2), ..., (1,2), ... Length J(J-1)/2.
 std::vector<std::uint8_t> pair_labels(const Skeleton& skeleton);

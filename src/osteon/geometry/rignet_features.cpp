@@ -17,17 +17,6 @@ constexpr std::size_t kGrain = 256;
 
 Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-// The columns of the smallest values of a row, at most `count`, ascending; ties: the smaller column first. Infinite ones do not count.
-std::vector<int> smallest(const Eigen::Ref<const Eigen::RowVectorXf>& row, int count) {
-  std::vector<int> order;
-  for (int i = 0; i < row.size(); ++i)
-    if (std::isfinite(row[i])) order.push_back(i);
-  const std::size_t kept = std::min(order.size(), static_cast<std::size_t>(count));
-  std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(kept), {}, [&](int i) { return std::pair(row[i], i); });
-  order.resize(kept);
-  return order;
-}
-
 Eigen::RowVector<float, kBoneFeatures> bone_features(const Segment& bone, float distance, bool is_leaf) {
   Eigen::RowVector<float, kBoneFeatures> out;
   out << bone.a.transpose(), bone.b.transpose(), proximity(distance), is_leaf ? 1.0f : 0.0f;
@@ -69,22 +58,36 @@ float proximity(float distance) { return 0.1f / (distance + 0.02f); }
 
 float distance_of_proximity(float proximity) { return 0.1f / proximity - 0.02f; }
 
+IndexMatrix nearest_bones(const Matrix& distances, int k) {
+  IndexMatrix nearest = IndexMatrix::Constant(distances.rows(), k, -1);
+  parallel_for(static_cast<std::size_t>(distances.rows()), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<int> order;
+    for (std::size_t v = begin; v < end; ++v) {
+      order.clear();
+      for (int b = 0; b < distances.cols(); ++b)
+        if (std::isfinite(distances(at(v), b))) order.push_back(b);
+      const auto kept = std::min(order.size(), static_cast<std::size_t>(k));
+      std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(kept), {},
+                                [&](int b) { return std::pair(distances(at(v), b), b); });
+      for (std::size_t i = 0; i < kept; ++i) nearest(at(v), at(i)) = order[i];
+    }
+  });
+  return nearest;
+}
+
 SkinInputs skin_inputs(std::span<const Vec3f> positions, std::span<const Segment> bones, std::span<const std::uint8_t> leaf,
                        const Matrix& distances, int k) {
   assert(!bones.empty() && leaf.size() == bones.size() && k > 0);
   assert(distances.rows() == at(positions.size()) && distances.cols() == at(bones.size()));
   SkinInputs out;
   out.features.resize(at(positions.size()), 3 + k * kBoneFeatures);
-  out.nearest.setConstant(at(positions.size()), k, -1);
+  out.nearest = nearest_bones(distances, k);
   parallel_for(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const std::vector<int> order = smallest(distances.row(at(v)), k);
-      assert(!order.empty());
-      const int known = static_cast<int>(order.size());
+      assert(out.nearest(at(v), 0) >= 0);
       out.features.row(at(v)).head<3>() = positions[v].transpose();
       for (int slot = 0; slot < k; ++slot) {
-        if (slot < known) out.nearest(at(v), slot) = order[static_cast<std::size_t>(slot)];
-        const int bone = order[static_cast<std::size_t>(slot < known ? slot : 0)];
+        const int bone = out.nearest(at(v), out.nearest(at(v), slot) >= 0 ? slot : 0);
         out.features.row(at(v)).segment<kBoneFeatures>(3 + slot * kBoneFeatures) =
             bone_features(bones[static_cast<std::size_t>(bone)], distances(at(v), bone), leaf[static_cast<std::size_t>(bone)] != 0);
       }

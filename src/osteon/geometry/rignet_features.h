@@ -26,6 +26,10 @@ using IndexMatrix = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 // %. The reference takes the nearest bones of whatever joint.
 Matrix one_bone_per_joint(const Matrix& distances, std::span<const int> starts);
 
+// The k nearest bones of each vertex by `distances` (V,B), (V,k): nearest first, ties: the smaller index; -1 where fewer are at a finite
+// distance.
+IndexMatrix nearest_bones(const Matrix& distances, int k);
+
 struct SkinInputs {
   Matrix features;      // (V, 3 + 8k): position, then the bones of `nearest`, nearest first
   IndexMatrix nearest;  // (V,k) bone; -1 where fewer than k are at a finite distance: the features there repeat the nearest bone's

@@ -5,6 +5,7 @@
 
 #include "osteon/infer/loops_backend.h"
 #include "osteon/infer/onednn_backend.h"
+#include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
 
 namespace osteon::infer {
@@ -22,12 +23,16 @@ typename Backend::Tensor output(Network network, Backend& b, const NetworkInput&
       return rignet::joint_net(b, mesh);
     case Network::attention:
       return rignet::mask_net(b, mesh);
+    case Network::votes:
+      return rignet::vote_net(b, mesh);
     case Network::bones:
       return rignet::bone_net(b, mesh, on_backend(b, *input.joints), on_backend(b, *input.pairs));
     case Network::root:
       return rignet::root_net(b, mesh, on_backend(b, *input.joints));
     case Network::skin:
       return rignet::skin_net(b, mesh, b.tensor(input.skin_features, input.mesh.batch.rows(), rignet::skin_inputs));
+    case Network::bind:
+      return nets::bind_net(b, mesh, on_backend(b, *input.choices));
   }
   assert(false && "no such network");
   return {};

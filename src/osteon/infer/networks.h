@@ -15,6 +15,7 @@ struct NetworkInput {
   const nets::JointArrays* joints = nullptr;  // bones, root
   const nets::PairArrays* pairs = nullptr;    // bones
   std::span<const float> skin_features = {};  // skin: (V,43)
+  const nets::BindArrays* choices = nullptr;  // bind
 };
 
 // The network's output as in nets/rignet.h (logits). Backend: Loops or Onednn; instantiated in networks.cpp.

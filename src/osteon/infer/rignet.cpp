@@ -19,28 +19,31 @@
 namespace osteon::infer {
 
 struct RignetModels::Networks {
-  std::array<std::unique_ptr<Onednn>, 5> by_network;
+  std::array<std::unique_ptr<Onednn>, nets::rignet::kNetworks.size()> by_network;  // those that are not in the folder are empty
 
+  bool has(nets::rignet::Network network) const { return by_network[static_cast<std::size_t>(network)] != nullptr; }
   Onednn& operator[](nets::rignet::Network network) const { return *by_network[static_cast<std::size_t>(network)]; }
 };
 
 namespace {
 
 namespace fs = std::filesystem;
+using nets::rignet::name_of;
 using nets::rignet::Network;
 
-// The large ones first, so that loading them in parallel ends evenly.
-constexpr std::array<std::pair<Network, const char*>, 5> files{{{Network::joints, "joints.safetensors"},
-                                                                {Network::attention, "attention.safetensors"},
-                                                                {Network::skin, "skin.safetensors"},
-                                                                {Network::bones, "bones.safetensors"},
-                                                                {Network::root, "root.safetensors"}}};
+fs::path file_of(const fs::path& folder, Network network) { return folder / fmt::format("{}.safetensors", name_of(network)); }
 
-void require_files(const fs::path& folder) {
+// The large ones first, so that loading them in parallel ends evenly.
+std::vector<Network> networks_in(const fs::path& folder) {
+  const auto only = [&](Network paper, Network ours) { return fs::exists(file_of(folder, paper)) && !fs::exists(file_of(folder, ours)); };
+  std::vector<Network> networks{Network::votes};
+  if (only(Network::joints, Network::votes)) networks = {Network::joints, Network::attention};
+  networks.insert(networks.end(), {only(Network::skin, Network::bind) ? Network::skin : Network::bind, Network::bones, Network::root});
   std::vector<std::string> missing;
-  for (const auto& [network, name] : files)
-    if (!fs::is_regular_file(folder / name)) missing.push_back((folder / name).string());
-  if (!missing.empty()) throw Error("RigNet needs five files of weights; missing:\n  {}", fmt::join(missing, "\n  "));
+  for (const Network network : networks)
+    if (!fs::is_regular_file(file_of(folder, network))) missing.push_back(file_of(folder, network).string());
+  if (!missing.empty()) throw Error("RigNet needs {} files of weights; missing:\n  {}", networks.size(), fmt::join(missing, "\n  "));
+  return networks;
 }
 
 // Runs the network on a single vertex, so that its weights are packed before the first mesh comes.
@@ -52,7 +55,8 @@ void pack_weights(Network network, Onednn& backend) {
   const nets::JointArrays joints = single_skeleton({&origin, 1}, {&on_the_plane, 1});
   const nets::PairArrays pairs{{0}, {0}, std::vector<float>(8), {0}};
   const std::vector<float> features(nets::rignet::skin_inputs);
-  run(network, backend, {mesh, &joints, &pairs, features});
+  const nets::BindArrays choices{std::vector<float>(nets::bind_features), {0, 1}, {0}};
+  run(network, backend, {mesh, &joints, &pairs, features, &choices});
 }
 
 void add_edges(nets::EdgeArrays& edges, NeighbourView neighbours) { edges.add(neighbours.offsets, neighbours.members, 0); }
@@ -129,11 +133,11 @@ nets::JointArrays single_skeleton(std::span<const Vec3f> joints, std::span<const
 RignetModels RignetModels::load() { return load(find_models("rignet")); }
 
 RignetModels RignetModels::load(const fs::path& folder) {
-  require_files(folder);
+  const std::vector<Network> present = networks_in(folder);
   auto networks = std::make_unique<Networks>();
-  parallel_for(files.size(), 1, [&](std::size_t i, std::size_t) {
-    const auto& [network, name] = files[i];
-    auto backend = std::make_unique<Onednn>(load_parameters(folder / name, nets::rignet::parameter_shapes(network)));
+  parallel_for(present.size(), 1, [&](std::size_t i, std::size_t) {
+    const Network network = present[i];
+    auto backend = std::make_unique<Onednn>(load_parameters(file_of(folder, network), nets::rignet::parameter_shapes(network)));
     pack_weights(network, *backend);
     networks->by_network[static_cast<std::size_t>(network)] = std::move(backend);
   });
@@ -145,12 +149,11 @@ RignetModels::~RignetModels() = default;
 RignetModels::RignetModels(RignetModels&&) noexcept = default;
 RignetModels& RignetModels::operator=(RignetModels&&) noexcept = default;
 
-Matrix RignetModels::displacement(const nets::MeshArrays& mesh) const {
-  return run(Network::joints, (*networks_)[Network::joints], {mesh});
-}
-
-Matrix RignetModels::attention(const nets::MeshArrays& mesh) const {
-  return sigmoid(run(Network::attention, (*networks_)[Network::attention], {mesh}));
+JointVotes RignetModels::votes(const nets::MeshArrays& mesh) const {
+  const auto output = [&](Network network) { return run(network, (*networks_)[network], {mesh}); };
+  if (!networks_->has(Network::votes)) return {output(Network::joints), sigmoid(output(Network::attention))};
+  const Matrix both = output(Network::votes);
+  return {both.leftCols(3), sigmoid(both.rightCols(1))};
 }
 
 Matrix RignetModels::bone_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints, const Matrix& pair_features) const {
@@ -167,6 +170,22 @@ Matrix RignetModels::root_probabilities(const nets::MeshArrays& mesh, const nets
   const Matrix logits = run(Network::root, (*networks_)[Network::root], {mesh, &joints});
   const Matrix shares = (logits.array() - logits.maxCoeff()).exp().matrix();
   return shares / shares.sum();
+}
+
+bool RignetModels::binds() const { return networks_->has(Network::bind); }
+
+Matrix RignetModels::bind_weights(const nets::MeshArrays& mesh, const nets::BindArrays& choices, int k) const {
+  const Matrix logits = run(Network::bind, (*networks_)[Network::bind], {.mesh = mesh, .choices = &choices});
+  Matrix out = Matrix::Zero(mesh.batch.rows(), k);
+  for (Eigen::Index v = 0; v < out.rows(); ++v) {
+    const Eigen::Index first = choices.offsets[static_cast<std::size_t>(v)];
+    const Eigen::Index count = choices.offsets[static_cast<std::size_t>(v) + 1] - first;
+    assert(count > 0 && count <= k);
+    const Eigen::ArrayXf own = logits.col(0).segment(first, count).array();
+    const Eigen::ArrayXf shares = (own - own.maxCoeff()).exp();
+    out.row(v).head(count) = (shares / shares.sum()).matrix().transpose();
+  }
+  return out;
 }
 
 Matrix RignetModels::skin_weights(const nets::MeshArrays& mesh, const Matrix& features, const NearestBones& nearest) const {

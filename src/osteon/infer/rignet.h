@@ -23,12 +23,18 @@ nets::MeshArrays single_mesh(std::span<const Vec3f> positions, NeighbourView rin
 // One skeleton's joints in the frame of the mesh, and each one's distance (>= 0) to the plane of symmetry (or to x = 0 where none is).
 nets::JointArrays single_skeleton(std::span<const Vec3f> joints, std::span<const float> plane_distances);
 
-// The five trained networks of RigNet (nets/rignet.h), ready to run. Their outputs are the same for any number of threads; renumbering the
+// Where the joints are, as the vertices of a mesh see it.
+struct JointVotes {
+  Matrix displacement;  // (V,3) from each vertex towards a joint near it
+  Matrix attention;     // (V,1) in 0..1: how well the vertex can tell where a joint is
+};
+
+// The trained networks of RigNet (nets/rignet.h), ready to run. Their outputs are the same for any number of threads; renumbering the
 // vertices renumbers them and nothing else. May be used by several threads at the same time.
 class RignetModels {
  public:
-  // From {attention,joints,bones,root,skin}.safetensors, float32 or float16. Throws one Error that names each missing file, or each
-  // parameter of a file that does not fit.
+  // From {votes,bones,root,bind}.safetensors, float32 or float16. The paper's networks may be there instead: joints and attention for
+  // votes, skin for bind. Throws one Error that names each missing file, or each parameter of a file that does not fit.
   static RignetModels load(const std::filesystem::path& folder);
   static RignetModels load();  // from where find_models("rignet") says
 
@@ -36,14 +42,20 @@ class RignetModels {
   RignetModels(RignetModels&&) noexcept;
   RignetModels& operator=(RignetModels&&) noexcept;
 
-  Matrix displacement(const nets::MeshArrays& mesh) const;  // (V,3) from each vertex towards a joint near it
-  Matrix attention(const nets::MeshArrays& mesh) const;     // (V,1) in 0..1: how well the vertex can tell where a joint is
+  JointVotes votes(const nets::MeshArrays& mesh) const;
 
   // (P,1) how likely a bone joins the two joints of each pair (i, j), i < j, in the order (0,1), (0,2), ..., (1,2), ... : the mean over
   // both orders of the two. pair_features: (P,8) first joint, second joint, their distance, share of the way that is inside the shape.
   Matrix bone_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints, const Matrix& pair_features) const;
 
   Matrix root_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints) const;  // (J,1), sum 1
+
+  // Whether weights come from the binding network: then bind_weights() may be asked, else skin_weights().
+  bool binds() const;
+
+  // (V,k) how much each vertex follows each of its bones, in the order of its rows in `choices`, 0 where there are fewer than k; rows sum to
+  // 1. Pre: every vertex has 1 to k bones.
+  Matrix bind_weights(const nets::MeshArrays& mesh, const nets::BindArrays& choices, int k) const;
 
   // (V,5) how much each vertex follows each bone of its row in `nearest` (V,5; -1: no bone, gets 0); rows sum to 1.
   // features: (V,43) of geometry/rignet_features.h.

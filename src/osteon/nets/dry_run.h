@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <map>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "osteon/nets/graph.h"
+#include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
 
 namespace osteon::nets {
@@ -57,8 +59,15 @@ class DryRun {
 
 namespace rignet {
 
-// The five networks, as they are called in files and commands.
-enum class Network { joints, attention, bones, root, skin };
+enum class Network { joints, attention, votes, bones, root, skin, bind };
+constexpr std::array kNetworks{Network::joints, Network::attention, Network::votes, Network::bones,
+                               Network::root,   Network::skin,      Network::bind};
+
+// What the networks are called in files and commands.
+constexpr const char* name_of(Network network) {
+  constexpr std::array<const char*, kNetworks.size()> names{"joints", "attention", "votes", "bones", "root", "skin", "bind"};
+  return names[static_cast<std::size_t>(network)];
+}
 
 inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network network) {
   DryRun b;
@@ -71,6 +80,9 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
     case Network::attention:
       mask_net(b, mesh);
       break;
+    case Network::votes:
+      vote_net(b, mesh);
+      break;
     case Network::bones:
       bone_net(b, mesh, joints, {{}, {}, {8}, {}});
       break;
@@ -79,6 +91,9 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
       break;
     case Network::skin:
       skin_net(b, mesh, {skin_inputs});
+      break;
+    case Network::bind:
+      bind_net(b, mesh, {{bind_features}, {}, {}});
       break;
   }
   return std::move(b.parameters);

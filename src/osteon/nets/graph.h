@@ -70,12 +70,32 @@ struct PairArrays {
   std::vector<std::int32_t> mesh_of;        // (P)
 };
 
+// The bones that each vertex may follow: a row for each vertex and bone (geometry/bind_features.h).
+struct BindArrays {
+  std::vector<float> features;           // (C,bind_features)
+  std::vector<std::int32_t> offsets{0};  // (V+1) rows of vertex v are offsets[v] .. offsets[v+1]-1
+  std::vector<std::int32_t> vertex_of;   // (C)
+
+  // The rows of the next mesh's vertices, numbered from 0 within it.
+  void add(std::span<const float> mesh_features, std::span<const std::int32_t> mesh_offsets) {
+    features.insert(features.end(), mesh_features.begin(), mesh_features.end());
+    const std::int32_t first = offsets.back();
+    for (std::size_t v = 0; v + 1 < mesh_offsets.size(); ++v) {
+      vertex_of.insert(vertex_of.end(), static_cast<std::size_t>(mesh_offsets[v + 1] - mesh_offsets[v]),
+                       static_cast<std::int32_t>(offsets.size()) - 1);
+      offsets.push_back(first + mesh_offsets[v + 1]);
+    }
+  }
+};
+constexpr int bind_features = 18;  // of a vertex and a bone
+
 // The inputs of all networks; what a network does not use may be empty.
 struct NetworkInputs {
   MeshArrays mesh;
   JointArrays joints;
   PairArrays pairs;
   std::vector<float> skin_features;  // (V,43)
+  BindArrays choices;
 };
 
 template <class B>
@@ -106,6 +126,13 @@ struct JointPairs {
   typename B::Index mesh_of;
 };
 
+template <class B>
+struct BindChoices {
+  typename B::Tensor features;  // (C,bind_features)
+  typename B::Index offsets;    // (V+1)
+  typename B::Index vertex_of;  // (C)
+};
+
 template <Ops B>
 Edges<B> on_backend(B& b, const EdgeArrays& edges) {
   return {b.index(edges.offsets), b.index(edges.sources), b.index(edges.receivers)};
@@ -133,6 +160,12 @@ template <Ops B>
 JointPairs<B> on_backend(B& b, const PairArrays& pairs) {
   return {b.index(pairs.first), b.index(pairs.second), b.tensor(pairs.features, static_cast<int>(pairs.first.size()), 8),
           b.index(pairs.mesh_of)};
+}
+
+template <Ops B>
+BindChoices<B> on_backend(B& b, const BindArrays& choices) {
+  return {b.tensor(choices.features, static_cast<int>(choices.vertex_of.size()), bind_features), b.index(choices.offsets),
+          b.index(choices.vertex_of)};
 }
 
 }  // namespace osteon::nets

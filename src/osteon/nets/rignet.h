@@ -4,7 +4,7 @@
 #include "osteon/nets/graph.h"
 #include "osteon/nets/layers.h"
 
-// The five networks of Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
+// The networks of Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
 // Layer sizes are those of the released code. Differs from it throughout: no dropout (as in the same author's later MoRig), and all
 // outputs are logits or plain numbers; the caller applies sigmoid or softmax.
 namespace osteon::nets::rignet {
@@ -40,6 +40,13 @@ typename B::Tensor joint_net(B& b, const MeshGraph<B>& mesh) {
 template <Ops B>
 typename B::Tensor mask_net(B& b, const MeshGraph<B>& mesh) {
   return per_vertex_net(b, Path(), mesh, 1);
+}
+
+// Displacement and attention at once, (V,4): columns 0 to 2 as joint_net, column 3 as mask_net. Ours, and the default: one body for both
+// costs half in training and at use, and learns more from few characters (docs/results.md).
+template <Ops B>
+typename B::Tensor vote_net(B& b, const MeshGraph<B>& mesh) {
+  return per_vertex_net(b, Path(), mesh, 4);
 }
 
 // One row for each mesh: three GCUs, an MLP, the largest over the vertices. (M, last of `widths`)

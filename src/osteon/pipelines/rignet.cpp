@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "osteon/base/error.h"
+#include "osteon/geometry/bind_features.h"
 #include "osteon/geometry/neighbourhoods.h"
 #include "osteon/geometry/rignet_features.h"
 #include "osteon/geometry/symmetry.h"
@@ -76,11 +77,11 @@ Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stage
 }
 
 JointCandidates candidates(const Body& body, const infer::RignetModels& models) {
-  const Matrix attention = models.attention(body.graph), displacement = models.displacement(body.graph);
+  const infer::JointVotes votes = models.votes(body.graph);
   JointCandidates out;
-  for (Eigen::Index v = 0; v < attention.rows(); ++v) {
-    out.positions.push_back(body.positions()[static_cast<std::size_t>(v)] + displacement.row(v).transpose());
-    out.attention.push_back(attention(v, 0));
+  for (Eigen::Index v = 0; v < votes.attention.rows(); ++v) {
+    out.positions.push_back(body.positions()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose());
+    out.attention.push_back(votes.attention(v, 0));
   }
   return out;
 }
@@ -159,21 +160,43 @@ Matrix distances_to(const std::vector<Bone>& bones, const Body& body) {
   return geometry::volumetric_geodesic_distance(body.working.mesh, body.voxels, segments);
 }
 
+// What the binding network reads of every vertex and the bones near it.
+nets::BindArrays choices_of(const Body& body, const geometry::BoneList& bones, const geometry::IndexMatrix& nearest,
+                            const Matrix& distances) {
+  Matrix of_nearest = Matrix::Zero(nearest.rows(), nearest.cols());
+  for (Eigen::Index v = 0; v < nearest.rows(); ++v)
+    for (Eigen::Index k = 0; k < nearest.cols(); ++k)
+      if (nearest(v, k) >= 0) of_nearest(v, k) = distances(v, nearest(v, k));
+  const PerVertex<Vec3f> normals = vertex_normals(body.working.mesh);
+  const geometry::BindInputs inputs = geometry::bind_inputs(body.positions(), normals.raw(), bones, nearest, of_nearest);
+  nets::BindArrays choices;
+  choices.add(inputs.features, inputs.offsets);
+  return choices;
+}
+
 Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const Matrix& distances, const Body& body,
                        const infer::RignetModels& models, std::vector<std::string>& warnings) {
   if (joints == 1) return Matrix::Ones(distances.rows(), 1);
   std::vector<Segment> segments;
   std::vector<std::uint8_t> leaf;
-  std::vector<int> starts;
+  std::vector<int> starts, ends;
   for (const Bone& b : bones) {
     segments.push_back(b.segment);
     leaf.push_back(b.end ? 0 : 1);
     starts.push_back(static_cast<int>(b.start));
+    ends.push_back(b.end ? static_cast<int>(*b.end) : -1);
   }
   const Matrix choice = geometry::one_bone_per_joint(distances, starts);
-  const geometry::SkinInputs inputs = geometry::skin_inputs(body.positions(), segments, leaf, choice);
-  const Matrix weights = models.skin_weights(body.graph, inputs.features, inputs.nearest);
-  if (weights.allFinite()) return joint_weights(weights, inputs.nearest, bones, joints);
+  geometry::IndexMatrix nearest = geometry::nearest_bones(choice, geometry::kBindBones);
+  Matrix weights;
+  if (models.binds()) {
+    weights = models.bind_weights(body.graph, choices_of(body, {segments, starts, ends}, nearest, choice), geometry::kBindBones);
+  } else {
+    const geometry::SkinInputs inputs = geometry::skin_inputs(body.positions(), segments, leaf, choice);
+    weights = models.skin_weights(body.graph, inputs.features, inputs.nearest);
+    nearest = inputs.nearest;
+  }
+  if (weights.allFinite()) return joint_weights(weights, nearest, bones, joints);
   warnings.push_back("the skin network gave no numbers: weights fall off with the distance to the bones instead");
   return skin::distance_weights(distances, bones, joints);
 }

@@ -18,23 +18,6 @@ std::string shape_text(const std::vector<std::int64_t>& shape) { return fmt::for
 
 }  // namespace
 
-const char* name_of(nets::rignet::Network network) {
-  using nets::rignet::Network;
-  switch (network) {
-    case Network::joints:
-      return "joints";
-    case Network::attention:
-      return "attention";
-    case Network::bones:
-      return "bones";
-    case Network::root:
-      return "root";
-    case Network::skin:
-      return "skin";
-  }
-  return "";
-}
-
 std::uint64_t count_of_trained(const Model& model) {
   std::uint64_t count = 0;
   for (const auto& [part, parameters] : model.parts)
@@ -77,7 +60,7 @@ Parameters load_weights(const std::filesystem::path& path, nets::rignet::Network
   for (const auto& [name, array] : file.arrays)
     if (!shapes.contains(name)) differences.push_back("unknown " + name);
   if (!differences.empty())
-    throw Error("{}: not weights of the {} network: {}", path.string(), name_of(network), fmt::join(differences, "; "));
+    throw Error("{}: not weights of the {} network: {}", path.string(), nets::rignet::name_of(network), fmt::join(differences, "; "));
   return parameters;
 }
 

@@ -13,13 +13,11 @@ namespace osteon::train {
 
 // What is trained together, in one map: each parameter's name is "<network>/<path>", such as "joints/gcu1.ring.0.linear.weight".
 struct Model {
-  std::map<std::string, Parameters> parts;  // by network: joints, attention, bones, root, skin; and "bandwidth", with one value "h"
+  std::map<std::string, Parameters> parts;  // by network: joints, attention, votes, bones, root, skin; and "bandwidth", with one value "h"
 
   Parameters& operator[](const std::string& part) { return parts[part]; }
 };
 
-// joints, attention, bones, root or skin.
-const char* name_of(nets::rignet::Network network);
 std::uint64_t count_of_trained(const Model& model);
 
 Array to_array(const at::Tensor& values);   // f32

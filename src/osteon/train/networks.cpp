@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/train/networks.h"
 
+#include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
 #include "osteon/train/fused_ops.h"
 #include "osteon/train/torch_ops.h"
@@ -20,12 +21,16 @@ at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
       return nets::rignet::joint_net(b, mesh);
     case Network::attention:
       return nets::rignet::mask_net(b, mesh);
+    case Network::votes:
+      return nets::rignet::vote_net(b, mesh);
     case Network::bones:
       return nets::rignet::bone_net(b, mesh, nets::on_backend(b, inputs.joints), nets::on_backend(b, inputs.pairs));
     case Network::root:
       return nets::rignet::root_net(b, mesh, nets::on_backend(b, inputs.joints));
     case Network::skin:
       return nets::rignet::skin_net(b, mesh, b.tensor(inputs.skin_features, inputs.mesh.batch.rows(), nets::rignet::skin_inputs));
+    case Network::bind:
+      return nets::bind_net(b, mesh, nets::on_backend(b, inputs.choices));
   }
   throw Error("unknown network");
 }

@@ -11,6 +11,7 @@ namespace osteon::train {
 namespace {
 
 using at::Tensor;
+using nets::rignet::name_of;
 using nets::rignet::Network;
 using Figures = std::map<std::string, double>;
 
@@ -21,12 +22,16 @@ Network network_of(Task task) {
     case Task::joints:
     case Task::collapse:
       return Network::joints;
+    case Task::votes:
+      return Network::votes;
     case Task::bones:
       return Network::bones;
     case Task::root:
       return Network::root;
     case Task::skin:
       return Network::skin;
+    case Task::bind:
+      return Network::bind;
   }
   throw Error("unknown task");
 }
@@ -34,8 +39,9 @@ Network network_of(Task task) {
 // The largest of a normalised channel over a mesh is 3 to 4: a thousand of them, all positive, drown the features of the vertex beside
 // them, and two thirds of the head's channels never fire. With these figures they begin small and around zero.
 void quieten_global_features(Network network, Parameters& parameters) {
-  const char* last_norm = network == Network::skin ? "global.1.norm" : "global.0.norm";
   if (network == Network::bones || network == Network::root) return;  // 64 and 128 channels beside as many others: no trouble
+  if (network == Network::bind) return;                               // has none
+  const char* last_norm = network == Network::skin ? "global.1.norm" : "global.0.norm";
   parameters.at(std::string(last_norm) + ".weight").fill_(0.2);
   parameters.at(std::string(last_norm) + ".bias").fill_(-0.7);
 }
@@ -54,15 +60,21 @@ Tensor rows_of_mesh(const Tensor& x, const nets::BatchArrays& batch, std::size_t
   return x.narrow(0, batch.offsets[mesh], batch.offsets[mesh + 1] - batch.offsets[mesh]);
 }
 
-// Positions moved by the displacement network.
+// Positions moved by the displacement, and how much each is trusted.
 struct Candidates {
-  Tensor points;  // (V,3)
-  Tensor joints;  // (J,3) reference
+  Tensor points;     // (V,3)
+  Tensor attention;  // (V,1) logits; undefined where the displacement is trained alone
+  Tensor joints;     // (J,3) reference
 };
 
-Candidates candidates(Model& model, const dataset::Batch& batch, const RunOptions& options) {
-  const Tensor displacement = run(Network::joints, model, batch, options);
-  return {tensor_of(batch.inputs.mesh.positions, 3, options.device) + displacement,
+Candidates candidates(Task task, Model& model, const dataset::Batch& batch, const RunOptions& options) {
+  Tensor displacement = run(network_of(task), model, batch, options), attention;
+  if (task == Task::votes) {
+    attention = displacement.narrow(1, 3, 1);
+    displacement = displacement.narrow(1, 0, 3);
+  }
+  if (task == Task::collapse) attention = run(Network::attention, model, batch, options);
+  return {tensor_of(batch.inputs.mesh.positions, 3, options.device) + displacement, attention,
           tensor_of(batch.inputs.joints.positions, 3, options.device)};
 }
 
@@ -74,10 +86,9 @@ Tensor displacement_loss(const Candidates& all, const dataset::Batch& batch) {
   return sum / static_cast<double>(meshes);
 }
 
-Tensor collapse_loss(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
-  const Candidates all = candidates(model, batch, options.run);
-  const Tensor logits = run(Network::attention, model, batch, options.run);
-  const Tensor attention = logits.sigmoid();
+Tensor collapse_loss(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(task, model, batch, options.run);
+  const Tensor attention = all.attention.sigmoid();
   const std::size_t meshes = batch.targets.root.size();
   Tensor loss = displacement_loss(all, batch);
   for (std::size_t m = 0; m < meshes; ++m) {
@@ -86,7 +97,26 @@ Tensor collapse_loss(Model& model, const dataset::Batch& batch, const TaskOption
     const Tensor collapsed = trail_loss(trail, rows_of_mesh(all.joints, batch.inputs.joints.batch, m));
     loss = loss + collapsed * (options.collapse_weight / static_cast<double>(meshes));
   }
-  return loss + options.attention_weight * attention_loss(logits, tensor_of(batch.targets.attention, 1, options.run.device));
+  return loss + options.attention_weight * attention_loss(all.attention, tensor_of(batch.targets.attention, 1, options.run.device));
+}
+
+// One row a vertex, (V,5) or (V,8). The binding network's rows are spread out; where a vertex has fewer bones the softmax finds nothing.
+Tensor skin_logits(Task task, const Tensor& out, const dataset::Batch& batch) {
+  if (task == Task::skin) return out;
+  constexpr std::int64_t width = geometry::kBindBones;
+  const nets::BindArrays& choices = batch.inputs.choices;
+  std::vector<std::int64_t> places;
+  for (std::size_t row = 0; row < choices.vertex_of.size(); ++row) {
+    const std::int32_t vertex = choices.vertex_of[row];
+    places.push_back(vertex * width + static_cast<std::int64_t>(row) - choices.offsets[static_cast<std::size_t>(vertex)]);
+  }
+  const Tensor at_places = at::tensor(places, at::kLong).to(out.device());
+  const auto vertices = static_cast<std::int64_t>(choices.offsets.size()) - 1;
+  return at::full({vertices * width}, -1e4, out.options()).index_copy(0, at_places, out.squeeze(1)).view({vertices, width});
+}
+
+Tensor skin_targets(const dataset::Batch& batch, at::Device device) {
+  return tensor_of(batch.targets.skin, static_cast<std::int64_t>(batch.targets.skin.size() / batch.targets.skin_share.size()), device);
 }
 
 double share(const Tensor& yes, const Tensor& of) { return yes.sum().item<double>() / std::max(1.0, of.sum().item<double>()); }
@@ -105,12 +135,14 @@ Figures distance_figures(const Tensor& points, const Tensor& joints) {
   return {{"loss", 0.5 * (to_joints + to_points)}, {"to_joints", to_joints}, {"to_points", to_points}};
 }
 
-Figures collapse_figures(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
-  const Candidates all = candidates(model, batch, options.run);
-  const Tensor attention = run(Network::attention, model, batch, options.run).sigmoid();
+Figures collapse_figures(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(task, model, batch, options.run);
+  const Tensor attention = all.attention.sigmoid();
   const Tensor points = mean_shift(all.points, attention, model["bandwidth"].at("h"), options.mean_shift_steps).back();
   const Tensor sure = (attention.squeeze(1) > 0.1 * attention.max()).nonzero().squeeze(1);
-  return distance_figures(points.index_select(0, sure), all.joints);
+  Figures figures = distance_figures(points.index_select(0, sure), all.joints);
+  figures["f1"] = attention_figures(all.attention, tensor_of(batch.targets.attention, 1, options.run.device)).at("f1");
+  return figures;
 }
 
 // The batch holds all pairs in one order and then in the other: the mean of both probabilities decides.
@@ -138,16 +170,16 @@ Figures skin_figures(const Tensor& logits, const Tensor& weights, const Tensor& 
 
 Figures figures_of(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
   const at::Device device = options.run.device;
-  if (task == Task::collapse) return collapse_figures(model, batch, options);
+  if (task == Task::collapse || task == Task::votes) return collapse_figures(task, model, batch, options);
   if (task == Task::joints) {
-    const Candidates all = candidates(model, batch, options.run);
+    const Candidates all = candidates(task, model, batch, options.run);
     return distance_figures(all.points, all.joints);
   }
   const Tensor out = run(network_of(task), model, batch, options.run);
   if (task == Task::attention) return attention_figures(out, tensor_of(batch.targets.attention, 1, device));
   if (task == Task::bones) return bone_figures(out, tensor_of(batch.targets.connected, 1, device));
   if (task == Task::root) return root_figures(out, batch);
-  return skin_figures(out, tensor_of(batch.targets.skin, nets::rignet::skin_bones, device), tensor_of(batch.targets.skin_share, 1, device));
+  return skin_figures(skin_logits(task, out, batch), skin_targets(batch, device), tensor_of(batch.targets.skin_share, 1, device));
 }
 
 bool has_targets(Task task, const dataset::Example& example) {
@@ -157,7 +189,8 @@ bool has_targets(Task task, const dataset::Example& example) {
 }  // namespace
 
 dataset::Parts parts_of(Task task) {
-  if (task == Task::bones) return dataset::Parts::pairs;
+  if (task == Task::bones || task == Task::root) return dataset::Parts::pairs;
+  if (task == Task::bind) return dataset::Parts::bind;
   return task == Task::skin ? dataset::Parts::skin : dataset::Parts::joints;
 }
 
@@ -168,24 +201,22 @@ Model fresh_model(Task task, std::uint64_t seed) {
     quieten_global_features(network, model[name_of(network)]);
   };
   add(network_of(task));
-  if (task == Task::collapse) {
-    add(Network::attention);
-    model["bandwidth"]["h"] = at::full({1}, 0.04, at::kFloat);
-  }
-  if (network_of(task) == Network::joints)
-    for (const char* name : {"out.weight", "out.bias"}) model["joints"].at(name).zero_();
+  if (task == Task::collapse) add(Network::attention);
+  if (task == Task::collapse || task == Task::votes) model["bandwidth"]["h"] = at::full({1}, 0.04, at::kFloat);
+  if (network_of(task) == Network::joints || network_of(task) == Network::votes)
+    for (const char* name : {"out.weight", "out.bias"}) model[name_of(network_of(task))].at(name).zero_();
   return model;
 }
 
 at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
   const at::Device device = options.run.device;
-  if (task == Task::collapse) return collapse_loss(model, batch, options);
-  if (task == Task::joints) return displacement_loss(candidates(model, batch, options.run), batch);
+  if (task == Task::collapse || task == Task::votes) return collapse_loss(task, model, batch, options);
+  if (task == Task::joints) return displacement_loss(candidates(task, model, batch, options.run), batch);
   const Tensor out = run(network_of(task), model, batch, options.run);
   if (task == Task::attention) return attention_loss(out, tensor_of(batch.targets.attention, 1, device));
   if (task == Task::bones) return bone_loss(out, tensor_of(batch.targets.connected, 1, device));
   if (task == Task::root) return root_loss(out, batch.inputs.joints.batch.offsets, batch.targets.root);
-  return skin_loss(out, tensor_of(batch.targets.skin, nets::rignet::skin_bones, device), tensor_of(batch.targets.skin_share, 1, device));
+  return skin_loss(skin_logits(task, out, batch), skin_targets(batch, device), tensor_of(batch.targets.skin_share, 1, device));
 }
 
 std::map<std::string, double> validate(Task task, Model& model, std::span<const dataset::Example> examples, const TaskOptions& options) {

@@ -16,9 +16,11 @@ enum class Task {
   attention,  // rignet.attention
   joints,     // rignet.joints: displacement alone, by chamfer(vertex + displacement, joints)
   collapse,   // rignet.joints --combined: displacement, attention and bandwidth together, through the mean shift
+  votes,      // rignet.votes: the same losses for the one network that gives both
   bones,
   root,
   skin,
+  bind,
 };
 
 struct TaskOptions {
@@ -40,10 +42,11 @@ at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, c
 // Named figures, each a mean over the characters; "loss" is what to choose by (smaller is better).
 //   attention   loss, f1 (of label 1 at probability 0.5)
 //   joints      loss, to_joints (mean over vertices of the distance to the nearest joint), to_points
+//   votes       the same of the shifted points, and f1 of the attention
 //   collapse    the same of the shifted points that have attention above 0.1 of the mesh's largest
 //   bones       loss, accuracy, precision and recall of the pairs with probability over 0.5 (mean of both orders)
 //   root        loss, accuracy
-//   skin        loss, l1 (mean over vertices of the summed differences to the reference weights)
+//   skin, bind  loss, l1 (mean over vertices of the summed differences to the reference weights)
 std::map<std::string, double> validate(Task task, Model& model, std::span<const dataset::Example> examples, const TaskOptions& options);
 
 }  // namespace osteon::train

@@ -23,12 +23,16 @@ std::string task_name(Task task) {
       return "joints";
     case Task::collapse:
       return "collapse";
+    case Task::votes:
+      return "votes";
     case Task::bones:
       return "bones";
     case Task::root:
       return "root";
     case Task::skin:
       return "skin";
+    case Task::bind:
+      return "bind";
   }
   return "";
 }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "osteon/base/random.h"
+#include "osteon/dataset/prepared.h"
+
+namespace osteon::dataset {
+
+// How a character is changed through its own rig, so that a few bodies stand for many.
+struct ArticulateOptions {
+  float probability = 0.8f;    // of changing a character at all
+  float symmetric = 0.6f;      // of changing both sides alike, where there are two sides
+  float largest_bend = 0.35f;  // the joints' angles have a standard deviation between 0 and this, radians; short bones bend less
+  float proportion = 0.15f;    // standard deviation of the logarithm of a part's size, against its parent's
+};
+
+// What skinning does to each joint's part, rest -> changed: v -> linear (v - joint) + moved joint.
+struct Articulation {
+  PerJoint<Eigen::Matrix3f> linear;  // rotation times size
+  PerJoint<Vec3f> joints;            // where the joints go
+};
+
+// For each joint the joint that is its mirror image (itself on the plane); empty where there is none, and for all without a plane.
+PerJoint<std::optional<JointId>> mirror_partners(const Skeleton& skeleton, const std::optional<Plane>& symmetry);
+
+// Random bends and proportions. Sizes are not passed on whole (a part keeps 0.7 of the logarithm of its parent's), so a big head has no
+// giant's hat; children go where their parent's part carries them. With `symmetry`, joints with a mirror image move like it.
+Articulation random_articulation(const Skeleton& skeleton, const std::optional<Plane>& symmetry, const ArticulateOptions& options,
+                                 Random& random);
+
+// The character skinned that way (linear blend), normalised again. What follows from the shape is computed anew as prepare() does:
+// neighbourhoods and attention; with `parts` pairs the voxels; skin: voxels and the nearest bones. The rest is left as it was.
+PreparedCharacter articulated(const PreparedCharacter& character, const Articulation& articulation, Parts parts);
+
+}  // namespace osteon::dataset

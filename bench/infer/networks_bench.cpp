@@ -64,6 +64,9 @@ double flop_of(Network network, const NetworkInput& input) {
     case Network::attention:
       nets::rignet::mask_net(b, mesh);
       break;
+    case Network::votes:
+      nets::vote_net(b, mesh, b.tensor(input.vote_features, input.mesh.batch.rows(), nets::vote_features));
+      break;
     case Network::bones:
       nets::rignet::bone_net(b, mesh, joints, nets::on_backend(b, *input.pairs));
       break;
@@ -72,6 +75,9 @@ double flop_of(Network network, const NetworkInput& input) {
       break;
     case Network::skin:
       nets::rignet::skin_net(b, mesh, b.tensor(input.skin_features, input.mesh.batch.rows(), nets::rignet::skin_inputs));
+      break;
+    case Network::bind:
+      nets::bind_net(b, mesh, nets::on_backend(b, *input.choices));
       break;
   }
   return b.flop;
@@ -140,6 +146,8 @@ double plain_product_rate() {
 void network(benchmark::State& state, Network which) {
   test::ExampleInput input = test::one_mesh(1, 25, 1);
   input.mesh = tube(static_cast<std::uint32_t>(state.range(0)));
+  input.choices = test::one_mesh(static_cast<std::size_t>(state.range(0)), 1, 2).choices;
+  input.vote_features.assign(static_cast<std::size_t>(state.range(0)) * nets::vote_features, 0.5f);
   input.skin_features.assign(static_cast<std::size_t>(state.range(0)) * nets::rignet::skin_inputs, 0.5f);
   Onednn backend(test::random_parameters(which, 1));
   run(which, backend, input.view());  // packs the weights
@@ -163,7 +171,7 @@ void network(benchmark::State& state, Network which) {
 }
 
 void register_all() {
-  for (const Network which : test::all_networks)
+  for (const Network which : nets::rignet::kNetworks)
     benchmark::RegisterBenchmark(test::name_of({which, 0}).c_str(), network, which)
         ->Arg(1200)
         ->Arg(4000)

@@ -72,17 +72,20 @@ TEST(RandomArticulation, without_proportions_keeps_the_lengths_of_bones) {
 TEST(Articulated, derives_the_same_as_preparing) {
   const Skeleton& rest = capsule().skeleton;
   const Articulation nothing{PerJoint<Eigen::Matrix3f>(rest.size(), Eigen::Matrix3f::Identity()), rest.rest_positions};
-  const PreparedCharacter same = articulated(capsule(), nothing, Parts::skin);
+  PreparedCharacter same = articulated(capsule(), nothing);
+  derive_from_shape(same, Parts::skin);
   for (VertexId v : same.mesh.positions.ids()) EXPECT_LT((same.mesh.positions[v] - capsule().mesh.positions[v]).norm(), 1e-5f);
   EXPECT_LT((same.nearest_distances - capsule().nearest_distances).cwiseAbs().maxCoeff(), 1e-3f);
-  EXPECT_EQ(articulated(capsule(), nothing, Parts::joints).attention, capsule().attention);
+  derive_from_shape(same, Parts::joints);
+  EXPECT_EQ(same.attention, capsule().attention);
 }
 
 TEST(Articulated, stays_in_the_frame_of_the_networks_with_joints_inside) {
   Random random(7);
   for (int i = 0; i < 5; ++i) {
     const Articulation bent = random_articulation(capsule().skeleton, std::nullopt, {.largest_bend = 0.6f}, random);
-    const PreparedCharacter out = articulated(capsule(), bent, Parts::pairs);
+    PreparedCharacter out = articulated(capsule(), bent);
+    derive_from_shape(out, Parts::pairs);
     Eigen::AlignedBox3f box;
     for (const Vec3f& p : out.mesh.positions) box.extend(p);
     EXPECT_NEAR(box.sizes().maxCoeff(), 1.0f, 1e-5f);

@@ -46,16 +46,18 @@ inline infer::Parameters random_parameters(Network network, std::uint64_t seed) 
 
 // Vertices in the unit box with 3 to 8 one-ring and 0 to 12 geodesic neighbours each, joints, all pairs of them, skin features.
 struct ExampleInput : nets::NetworkInputs {
-  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features}; }
+  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features, &choices, vote_features}; }
 
   void add_mesh(std::size_t vertices, std::size_t joint_count, Random& random) {
     const std::int32_t first_vertex = mesh.batch.rows(), first_joint = joints.batch.rows();
     const auto mesh_id = static_cast<std::int32_t>(mesh.batch.offsets.size()) - 1;
     append(mesh.positions, 3 * vertices, random);
     append(skin_features, nets::rignet::skin_inputs * vertices, random);
+    append(vote_features, nets::vote_features * vertices, random);
     add_neighbours(mesh.ring, vertices, 3, 8, first_vertex, random);
     add_neighbours(mesh.geodesic, vertices, 0, 12, first_vertex, random);
     mesh.batch.add(vertices);
+    add_choices(vertices, random);
     append(joints.positions, 3 * joint_count, random);
     append(joints.plane_distance, joint_count, random);
     joints.pairs.add_complete(static_cast<std::int32_t>(joint_count), first_joint);
@@ -73,6 +75,16 @@ struct ExampleInput : nets::NetworkInputs {
  private:
   static void append(std::vector<float>& to, std::size_t count, Random& random) {
     for (std::size_t i = 0; i < count; ++i) to.push_back(random.uniform());
+  }
+  // 1 to 8 bones for each vertex
+  void add_choices(std::size_t vertices, Random& random) {
+    std::vector<std::int32_t> offsets{0};
+    for (std::size_t v = 0; v < vertices; ++v) offsets.push_back(offsets.back() + 1 + static_cast<std::int32_t>(random.below(8)));
+    std::vector<float> features;
+    append(features, static_cast<std::size_t>(offsets.back() * nets::bind_features), random);
+    std::vector<std::int32_t> bones;
+    for (std::int32_t i = 0; i < offsets.back(); ++i) bones.push_back(static_cast<std::int32_t>(random.below(9)));
+    choices.add(features, offsets, bones);
   }
   static void add_neighbours(nets::EdgeArrays& edges, std::size_t vertices, std::size_t least, std::size_t most, std::int32_t first,
                              Random& random) {

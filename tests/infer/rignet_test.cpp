@@ -22,7 +22,7 @@ RignetModels models_with(std::initializer_list<Network> networks) {
 }
 
 const RignetModels& models() {
-  static const RignetModels loaded = models_with({Network::votes, Network::bones, Network::root, Network::skin});
+  static const RignetModels loaded = models_with({Network::votes, Network::bones, Network::root, Network::bind});
   return loaded;
 }
 
@@ -34,7 +34,7 @@ TEST(RignetModels, attention_and_probabilities_lie_between_0_and_1) {
   const test::ExampleInput input = test::one_mesh(120, 7, 2);
   const RignetModels paper = models_with({Network::joints, Network::attention, Network::bones, Network::root, Network::skin});
   for (const RignetModels* model : {&models(), &paper}) {
-    const JointVotes votes = model->votes(input.mesh);
+    const JointVotes votes = model->votes(input.mesh, input.vote_features);
     EXPECT_EQ(votes.attention.rows(), 120);
     EXPECT_EQ(votes.attention.cols(), 1);
     EXPECT_GE(votes.attention.minCoeff(), 0);
@@ -70,17 +70,30 @@ TEST(RignetModels, skin_weights_sum_to_1_over_the_bones_that_there_are) {
   const test::ExampleInput input = test::one_mesh(50, 2, 5);
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest(50, 5);
   nearest.rowwise() = Eigen::Matrix<int, 1, 5>(2, 0, 1, -1, -1);
-  const Matrix weights = models().skin_weights(input.mesh, matrix_of(input.skin_features, 43), nearest);
+  const RignetModels paper = models_with({Network::votes, Network::bones, Network::root, Network::skin});
+  EXPECT_FALSE(paper.binds());
+  const Matrix weights = paper.skin_weights(input.mesh, matrix_of(input.skin_features, 43), nearest);
   EXPECT_TRUE((weights.rightCols(2).array() == 0).all());
   for (Eigen::Index v = 0; v < 50; ++v) EXPECT_NEAR(weights.row(v).sum(), 1, 1e-6f);
 }
 
+TEST(RignetModels, bind_weights_sum_to_1_over_the_choices_of_a_vertex) {
+  const test::ExampleInput input = test::one_mesh(50, 2, 5);
+  ASSERT_TRUE(models().binds());
+  const Matrix weights = models().bind_weights(input.mesh, input.choices, 8);
+  for (Eigen::Index v = 0; v < 50; ++v) {
+    const std::int32_t count = input.choices.offsets[static_cast<std::size_t>(v) + 1] - input.choices.offsets[static_cast<std::size_t>(v)];
+    EXPECT_NEAR(weights.row(v).head(count).sum(), 1, 1e-6f);
+    EXPECT_TRUE((weights.row(v).tail(8 - count).array() == 0).all());
+  }
+}
+
 TEST(RignetModels, may_be_used_by_two_threads_at_once) {
   const test::ExampleInput input = test::one_mesh(100, 3, 6);
-  const Matrix expected = models().votes(input.mesh).displacement;
+  const Matrix expected = models().votes(input.mesh, input.vote_features).displacement;
   Matrix other;
-  std::thread thread([&] { other = models().votes(input.mesh).displacement; });
-  const Matrix own = models().votes(input.mesh).displacement;
+  std::thread thread([&] { other = models().votes(input.mesh, input.vote_features).displacement; });
+  const Matrix own = models().votes(input.mesh, input.vote_features).displacement;
   thread.join();
   EXPECT_TRUE(test::same_bits(own, expected));
   EXPECT_TRUE(test::same_bits(other, expected));
@@ -90,7 +103,7 @@ TEST(RignetModels, every_missing_file_is_named) {
   const test::TemporaryFolder folder;
   save_safetensors(folder / "root.safetensors", {});
   const std::string error = test::error_of([&] { RignetModels::load(folder.path()); });
-  for (const char* name : {"votes", "bones", "skin"})
+  for (const char* name : {"votes", "bones", "bind"})
     EXPECT_THAT(error, HasSubstr((folder / name).string() + ".safetensors"));
   EXPECT_THAT(error, testing::Not(HasSubstr("root.safetensors")));
 }

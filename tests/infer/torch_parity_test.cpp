@@ -41,7 +41,7 @@ TEST(TorchParity, every_operation) {
 }
 
 class TorchNetworks : public testing::TestWithParam<Network> {};
-INSTANTIATE_TEST_SUITE_P(rignet, TorchNetworks, testing::ValuesIn(test::all_networks), test::name_of);
+INSTANTIATE_TEST_SUITE_P(rignet, TorchNetworks, testing::ValuesIn(nets::rignet::kNetworks), test::name_of);
 
 TEST_P(TorchNetworks, both_engines_of_the_trainer_equal_the_product) {
   Random random(41);

@@ -99,7 +99,7 @@ TEST_P(FusedNetwork, gives_the_same_bytes_with_one_and_two_threads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rignet, FusedNetwork,
-                         ::testing::Values(Network::joints, Network::attention, Network::bones, Network::root, Network::skin));
+                         ::testing::ValuesIn(nets::rignet::kNetworks));
 
 }  // namespace
 }  // namespace osteon::train

@@ -92,7 +92,7 @@ Articulation random_articulation(const Skeleton& skeleton, const std::optional<P
   return out;
 }
 
-PreparedCharacter articulated(const PreparedCharacter& character, const Articulation& articulation, Parts parts) {
+PreparedCharacter articulated(const PreparedCharacter& character, const Articulation& articulation) {
   PreparedCharacter out = character;
   PerJoint<Transform> transforms;
   for (JointId j : character.skeleton.names.ids()) {
@@ -106,7 +106,6 @@ PreparedCharacter articulated(const PreparedCharacter& character, const Articula
   const geometry::Normalization again = geometry::normalization_of(out.mesh);
   for (Vec3f& p : out.mesh.positions) p = again.apply(p);
   for (Vec3f& p : out.skeleton.rest_positions) p = again.apply(p);
-  derive_from_shape(out, parts);
   return out;
 }
 

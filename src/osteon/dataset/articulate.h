@@ -30,8 +30,7 @@ PerJoint<std::optional<JointId>> mirror_partners(const Skeleton& skeleton, const
 Articulation random_articulation(const Skeleton& skeleton, const std::optional<Plane>& symmetry, const ArticulateOptions& options,
                                  Random& random);
 
-// The character skinned that way (linear blend), normalised again. What follows from the shape is computed anew as prepare() does:
-// neighbourhoods and attention; with `parts` pairs the voxels; skin: voxels and the nearest bones. The rest is left as it was.
-PreparedCharacter articulated(const PreparedCharacter& character, const Articulation& articulation, Parts parts);
+// The character skinned that way (linear blend), normalised again. What follows from the shape is left as it was: derive_from_shape().
+PreparedCharacter articulated(const PreparedCharacter& character, const Articulation& articulation);
 
 }  // namespace osteon::dataset

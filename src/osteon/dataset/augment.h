@@ -16,8 +16,11 @@ struct AugmentOptions {
   float tilt = 0.07f;         // largest turns about x and z
   float stretch = 0.12f;      // each axis is scaled by exp(u), |u| <= stretch
   ArticulateOptions articulate = {};
+  float reduce = 0.7f;                // probability of fewer vertices, where no weights are learned ...
+  std::size_t least_vertices = 500;   // ... from here up to as many as there are
 
-  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}}; }
+
+  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f}; }
 };
 
 // An affine map of a character: its labels stay true.

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "osteon/base/parallel.h"
+#include "osteon/geometry/decimate.h"
 #include "osteon/geometry/symmetry.h"
 
 namespace osteon::dataset {
@@ -32,6 +33,7 @@ Example example_of(PreparedCharacter character, Parts parts, const std::optional
   Example example;
   example.symmetry = symmetry;
   example.plane_distance = plane_distances(character.skeleton, example.symmetry);
+  if (parts == Parts::joints) example.vote_features = geometry::vote_features(character.mesh);
   if (parts == Parts::pairs) {
     example.pair_features = geometry::pair_features(character.skeleton.rest_positions.raw(), character.voxels);
     example.pair_labels = pair_labels(character.skeleton);
@@ -49,11 +51,19 @@ Example example_of(PreparedCharacter character, Parts parts, const std::optional
   return example;
 }
 
-// The example itself, or one made of it through its rig, which is then kept in `made`.
-const Example& varied(const Example& example, Parts parts, const ArticulateOptions& options, Random& random, std::optional<Example>& made) {
-  if (random.uniform() >= options.probability || example.character.joints() < 2) return example;
-  const Articulation articulation = random_articulation(example.character.skeleton, example.symmetry, options, random);
-  PreparedCharacter changed = articulated(example.character, articulation, parts);
+// The example itself, or one made of it, which is then kept in `made`: moved through its rig; its mesh reduced.
+const Example& varied(const Example& example, Parts parts, const AugmentOptions& options, Random& random, std::optional<Example>& made) {
+  const bool articulate = random.uniform() < options.articulate.probability && example.character.joints() > 1;
+  const bool reduce = random.uniform() < options.reduce && parts == Parts::joints && example.character.vertices() > options.least_vertices;
+  if (!articulate && !reduce) return example;
+  PreparedCharacter changed =
+      articulate ? articulated(example.character, random_articulation(example.character.skeleton, example.symmetry, options.articulate, random))
+                 : example.character;
+  if (reduce) {
+    const std::size_t target = options.least_vertices + random.below(changed.vertices() - options.least_vertices);
+    changed.mesh = geometry::decimate(changed.mesh, {.target_vertices = target}).mesh;
+  }
+  derive_from_shape(changed, parts);
   const auto symmetry = parts == Parts::pairs ? geometry::symmetry_plane(changed.mesh) : example.symmetry;  // the others do not read it
   return made.emplace(example_of(std::move(changed), parts, symmetry));
 }
@@ -79,6 +89,16 @@ void add_joints(Batch& batch, const Example& example, const Placement& placement
   batch.targets.root.push_back(first);  // joint 0 is the root
   const auto& attention = example.character.attention;
   batch.targets.attention.insert(batch.targets.attention.end(), attention.begin(), attention.end());
+}
+
+void add_vote_features(Batch& batch, const Example& example, const Placement& placement) {
+  geometry::VoteFeatures placed = example.vote_features;
+  const Eigen::Matrix3f of_normals = placement.linear.inverse().transpose();
+  for (Vec3f& n : placed.normals) n = (of_normals * n).normalized();
+  for (Vec3f& way : placed.to_middle) way = placement.linear * way;
+  for (float& thickness : placed.thicknesses) thickness *= placement.length_scale;
+  const std::vector<float> rows = geometry::vote_rows(placed);
+  batch.inputs.vote_features.insert(batch.inputs.vote_features.end(), rows.begin(), rows.end());
 }
 
 // A pair of joints of one example, by their rows there; `row` is that of its features.
@@ -145,7 +165,7 @@ void add_choices(Batch& batch, const Example& example, const Placement& placemen
   for (Segment& s : bones.segments) s = {placement.apply(s.a), placement.apply(s.b)};
   const geometry::BindInputs inputs =
       geometry::bind_inputs(positions, normals, bones, example.choices, placement.length_scale * character.nearest_distances);
-  batch.inputs.choices.add(inputs.features, inputs.offsets);
+  batch.inputs.choices.add(inputs.features, inputs.offsets, inputs.bones);
   add_skin_targets(batch, example.skin_targets);
 }
 
@@ -194,11 +214,12 @@ Batch training_batch(std::span<const Example* const> examples, const BatchOption
   Batch batch;
   for (const Example* original : examples) {
     std::optional<Example> made;
-    const Example& example = varied(*original, options.parts, augment.articulate, random, made);
+    const Example& example = varied(*original, options.parts, augment, random, made);
     const PreparedCharacter& character = example.character;
     const Placement placement = random_placement(character.mesh.positions.raw(), augment, random);
     add_mesh(batch.inputs.mesh, character, placement, geometry::drawn(character.balls, options.neighbours, random));
     add_joints(batch, example, placement);
+    if (options.parts == Parts::joints) add_vote_features(batch, example, placement);
     if (options.parts == Parts::skin) add_skin(batch, example, placement);
     if (options.parts == Parts::bind) add_choices(batch, example, placement);
     if (options.parts != Parts::pairs) continue;
@@ -216,6 +237,7 @@ Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& 
     const PreparedCharacter& character = example->character;
     add_mesh(batch.inputs.mesh, character, {}, geometry::evenly(character.balls, options.neighbours));
     add_joints(batch, *example, {});
+    if (options.parts == Parts::joints) add_vote_features(batch, *example, {});
     if (options.parts == Parts::skin) add_skin(batch, *example, {});
     if (options.parts == Parts::bind) add_choices(batch, *example, {});
     if (options.parts != Parts::pairs) continue;

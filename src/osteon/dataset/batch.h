@@ -8,6 +8,7 @@
 
 #include "osteon/dataset/augment.h"
 #include "osteon/dataset/prepared.h"
+#include "osteon/geometry/vote_features.h"
 #include "osteon/nets/graph.h"
 
 namespace osteon::dataset {
@@ -17,6 +18,7 @@ struct Example {
   PreparedCharacter character;
   std::optional<Plane> symmetry;          // of the mesh
   std::vector<float> plane_distance;      // (J) to the plane of symmetry, or |x| where there is none
+  geometry::VoteFeatures vote_features;   // joints only
   Matrix pair_features;                   // (P,8); pairs only
   std::vector<std::uint8_t> pair_labels;  // (P); pairs only
   Matrix skin_features;                   // (V,43); skin only

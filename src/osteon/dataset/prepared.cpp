@@ -85,6 +85,7 @@ void derive_inputs(PreparedCharacter& character) {
 }
 
 void derive_from_shape(PreparedCharacter& character, Parts parts) {
+  character.one_ring = geometry::one_ring(character.mesh);
   character.balls = geometry::geodesic_balls(character.mesh);
   const std::vector<Vec3f>& joints = character.skeleton.rest_positions.raw();
   if (parts == Parts::joints) character.attention = geometry::attention_labels(character.mesh, joints, parent_indices(character.skeleton));

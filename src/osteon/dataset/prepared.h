@@ -61,8 +61,8 @@ enum class Parts { joints, pairs, skin, bind };  // joints: attention too; pairs
 // Fills one_ring, balls and voxels from the mesh (prepare() and loading do so).
 void derive_inputs(PreparedCharacter& character);
 
-// After vertices and joints have moved, the faces being the same: everything that follows from them and that `parts` reads. Joints:
-// balls and attention; pairs: balls and voxels; skin and bind: balls, voxels and the nearest bones, as many as there were.
+// After the mesh or the joints have changed: everything that follows from them and that `parts` reads. Joints: neighbourhoods and
+// attention; pairs: neighbourhoods and voxels; skin and bind: these and the nearest bones, as many as there were.
 void derive_from_shape(PreparedCharacter& character, Parts parts);
 
 // Inputs of the skin network, (V, 3 + 8k); pre: k <= options.nearest_bones of its preparation.

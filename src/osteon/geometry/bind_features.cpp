@@ -23,23 +23,38 @@ struct Relation {
   bool is_child, is_parent, is_sibling;  // of the other
 };
 
+// Where a joint stands in its tree.
+struct Place {
+  int parent = -1, depth = 0, children = 0, descendants = 0;
+  float parent_length = 0.0f;  // of the bone that ends at it
+};
+
 class BoneTree {
  public:
   explicit BoneTree(const BoneList& bones) : bones_(bones) {
-    const int joints = 1 + std::max(std::ranges::max(bones.starts), std::ranges::max(bones.ends));
-    parent_.assign(static_cast<std::size_t>(joints), -1);
-    for (std::size_t b = 0; b < bones.starts.size(); ++b)
-      if (bones.ends[b] >= 0) parent_[static_cast<std::size_t>(bones.ends[b])] = bones.starts[b];
+    joints_.resize(static_cast<std::size_t>(1 + std::max(std::ranges::max(bones.starts), std::ranges::max(bones.ends))));
+    for (std::size_t b = 0; b < bones.starts.size(); ++b) {
+      if (bones.ends[b] < 0) continue;
+      Place& end = joints_[static_cast<std::size_t>(bones.ends[b])];
+      end.parent = bones.starts[b];
+      end.parent_length = (bones.segments[b].b - bones.segments[b].a).norm();
+      ++joints_[static_cast<std::size_t>(bones.starts[b])].children;
+    }
+    for (Place& joint : joints_)
+      for (int above = joint.parent; above >= 0; above = joints_[static_cast<std::size_t>(above)].parent) {
+        ++joint.depth;
+        ++joints_[static_cast<std::size_t>(above)].descendants;
+      }
   }
+  const Place& start_of(std::size_t bone) const { return joints_[static_cast<std::size_t>(bones_.starts[bone])]; }
   Relation of(std::size_t bone, std::size_t other) const {
-    const int a = bones_.starts[bone], b = bones_.starts[other];
-    const int parent_of_a = parent_[static_cast<std::size_t>(a)], parent_of_b = parent_[static_cast<std::size_t>(b)];
-    return {parent_of_a == b, parent_of_b == a, bone != other && parent_of_a >= 0 && parent_of_a == parent_of_b};
+    const int above = start_of(bone).parent, above_other = start_of(other).parent;
+    return {above == bones_.starts[other], above_other == bones_.starts[bone], bone != other && above >= 0 && above == above_other};
   }
 
  private:
   const BoneList& bones_;
-  std::vector<int> parent_;  // of each joint
+  std::vector<Place> joints_;
 };
 
 Vec3f direction_or_zero(const Vec3f& v) {
@@ -57,6 +72,7 @@ BindInputs bind_inputs(std::span<const Vec3f> positions, std::span<const Vec3f> 
   for (Eigen::Index v = 0; v < nearest.rows(); ++v)
     out.offsets.push_back(out.offsets.back() + static_cast<std::int32_t>((nearest.row(v).array() >= 0).count()));
   out.features.resize(static_cast<std::size_t>(out.offsets.back()) * kBindFeatures);
+  out.bones.resize(static_cast<std::size_t>(out.offsets.back()));
   parallel_for(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto first = static_cast<std::size_t>(nearest(at(v), 0));
@@ -71,6 +87,8 @@ BindInputs bind_inputs(std::span<const Vec3f> positions, std::span<const Vec3f> 
         const float along = length > 1e-6f ? (x - a).dot(b - a) / (length * length) : 0.0f;
         const Vec3f from_bone = x - (a + std::clamp(along, 0.0f, 1.0f) * (b - a));
         const Relation relation = tree.of(bone, first);
+        const Place& start = tree.start_of(bone);
+        out.bones[static_cast<std::size_t>(out.offsets[v] + k)] = static_cast<std::int32_t>(bone);
         const float values[kBindFeatures] = {proximity(distance),
                                              std::log((distance + kSmall) / (least + kSmall)),
                                              log_length(distance),
@@ -88,7 +106,12 @@ BindInputs bind_inputs(std::span<const Vec3f> positions, std::span<const Vec3f> 
                                              relation.is_sibling ? 1.0f : 0.0f,
                                              static_cast<float>(k) / kBindBones,
                                              std::min(distance / (length + 0.02f), 5.0f),
-                                             10.0f * least};
+                                             10.0f * least,
+                                             0.1f * static_cast<float>(start.depth),
+                                             0.3f * static_cast<float>(start.children),
+                                             0.3f * std::log(1.0f + static_cast<float>(start.descendants)),
+                                             5.0f * start.parent_length,
+                                             start.parent < 0 ? 1.0f : 0.0f};
         std::ranges::copy(values, row);
       }
     }

@@ -12,7 +12,7 @@
 // which way it faces, so a limb teaches about all limbs.
 namespace osteon::geometry {
 
-constexpr int kBindFeatures = 18;
+constexpr int kBindFeatures = 23;
 constexpr int kBindBones = 8;  // bones that a vertex can choose from
 
 // A skeleton's bones, parallel arrays; joints are named by their index.
@@ -25,6 +25,7 @@ struct BoneList {
 struct BindInputs {
   std::vector<float> features;           // (C,kBindFeatures)
   std::vector<std::int32_t> offsets{0};  // (V+1) rows of vertex v are offsets[v] .. offsets[v+1]-1
+  std::vector<std::int32_t> bones;       // (C) bone of each row
 };
 
 // `normals` of unit length; `distances` (V,k): volumetric_geodesic_distance of the bones in `nearest` (V,k).

@@ -7,6 +7,7 @@
 #include "osteon/infer/onednn_backend.h"
 #include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
+#include "osteon/nets/voting.h"
 
 namespace osteon::infer {
 namespace {
@@ -24,7 +25,7 @@ typename Backend::Tensor output(Network network, Backend& b, const NetworkInput&
     case Network::attention:
       return rignet::mask_net(b, mesh);
     case Network::votes:
-      return rignet::vote_net(b, mesh);
+      return nets::vote_net(b, mesh, b.tensor(input.vote_features, input.mesh.batch.rows(), nets::vote_features));
     case Network::bones:
       return rignet::bone_net(b, mesh, on_backend(b, *input.joints), on_backend(b, *input.pairs));
     case Network::root:

@@ -12,6 +12,7 @@
 #include "osteon/nets/graph.h"
 #include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
+#include "osteon/nets/voting.h"
 
 namespace osteon::nets {
 
@@ -81,7 +82,7 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
       mask_net(b, mesh);
       break;
     case Network::votes:
-      vote_net(b, mesh);
+      vote_net(b, mesh, {vote_features});
       break;
     case Network::bones:
       bone_net(b, mesh, joints, {{}, {}, {8}, {}});
@@ -93,7 +94,7 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
       skin_net(b, mesh, {skin_inputs});
       break;
     case Network::bind:
-      bind_net(b, mesh, {{bind_features}, {}, {}});
+      bind_net(b, mesh, {{bind_features}, {}, {}, {}, {}, {}});
       break;
   }
   return std::move(b.parameters);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -75,11 +77,25 @@ struct BindArrays {
   std::vector<float> features;           // (C,bind_features)
   std::vector<std::int32_t> offsets{0};  // (V+1) rows of vertex v are offsets[v] .. offsets[v+1]-1
   std::vector<std::int32_t> vertex_of;   // (C)
+  std::vector<std::int32_t> by_bone;     // (C) the rows again, in the order of their bones
+  std::vector<std::int32_t> bone_offsets{0};  // (B+1) those of bone b are by_bone[bone_offsets[b] .. bone_offsets[b+1]-1]; none is without
+  std::vector<std::int32_t> bone_of;     // (C) which of the B
 
-  // The rows of the next mesh's vertices, numbered from 0 within it.
-  void add(std::span<const float> mesh_features, std::span<const std::int32_t> mesh_offsets) {
+  // The rows of the next mesh's vertices, numbered from 0 within it, and which of its bones each is about.
+  void add(std::span<const float> mesh_features, std::span<const std::int32_t> mesh_offsets, std::span<const std::int32_t> mesh_bones) {
     features.insert(features.end(), mesh_features.begin(), mesh_features.end());
     const std::int32_t first = offsets.back();
+    by_bone.resize(by_bone.size() + mesh_bones.size());
+    const std::span own = std::span(by_bone).last(mesh_bones.size());
+    std::iota(own.begin(), own.end(), first);
+    const auto bone = [&](std::int32_t row) { return mesh_bones[static_cast<std::size_t>(row - first)]; };
+    std::ranges::stable_sort(own, {}, bone);
+    bone_of.resize(by_bone.size());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (i > 0 && bone(own[i]) != bone(own[i - 1])) bone_offsets.push_back(first + static_cast<std::int32_t>(i));
+      bone_of[static_cast<std::size_t>(own[i])] = static_cast<std::int32_t>(bone_offsets.size()) - 1;
+    }
+    if (!own.empty()) bone_offsets.push_back(static_cast<std::int32_t>(by_bone.size()));
     for (std::size_t v = 0; v + 1 < mesh_offsets.size(); ++v) {
       vertex_of.insert(vertex_of.end(), static_cast<std::size_t>(mesh_offsets[v + 1] - mesh_offsets[v]),
                        static_cast<std::int32_t>(offsets.size()) - 1);
@@ -87,7 +103,7 @@ struct BindArrays {
     }
   }
 };
-constexpr int bind_features = 18;  // of a vertex and a bone
+constexpr int bind_features = 23;  // of a vertex and a bone
 
 // The inputs of all networks; what a network does not use may be empty.
 struct NetworkInputs {
@@ -95,6 +111,7 @@ struct NetworkInputs {
   JointArrays joints;
   PairArrays pairs;
   std::vector<float> skin_features;  // (V,43)
+  std::vector<float> vote_features;  // (V,7)
   BindArrays choices;
 };
 
@@ -131,6 +148,7 @@ struct BindChoices {
   typename B::Tensor features;  // (C,bind_features)
   typename B::Index offsets;    // (V+1)
   typename B::Index vertex_of;  // (C)
+  typename B::Index by_bone, bone_offsets, bone_of;
 };
 
 template <Ops B>
@@ -165,7 +183,7 @@ JointPairs<B> on_backend(B& b, const PairArrays& pairs) {
 template <Ops B>
 BindChoices<B> on_backend(B& b, const BindArrays& choices) {
   return {b.tensor(choices.features, static_cast<int>(choices.vertex_of.size()), bind_features), b.index(choices.offsets),
-          b.index(choices.vertex_of)};
+          b.index(choices.vertex_of), b.index(choices.by_bone), b.index(choices.bone_offsets), b.index(choices.bone_of)};
 }
 
 }  // namespace osteon::nets

@@ -42,13 +42,6 @@ typename B::Tensor mask_net(B& b, const MeshGraph<B>& mesh) {
   return per_vertex_net(b, Path(), mesh, 1);
 }
 
-// Displacement and attention at once, (V,4): columns 0 to 2 as joint_net, column 3 as mask_net. Ours, and the default: one body for both
-// costs half in training and at use, and learns more from few characters (docs/results.md).
-template <Ops B>
-typename B::Tensor vote_net(B& b, const MeshGraph<B>& mesh) {
-  return per_vertex_net(b, Path(), mesh, 4);
-}
-
 // One row for each mesh: three GCUs, an MLP, the largest over the vertices. (M, last of `widths`)
 template <Ops B>
 typename B::Tensor shape_encoder(B& b, const Path& path, const MeshGraph<B>& mesh, std::initializer_list<int> widths) {

@@ -13,6 +13,7 @@
 #include "osteon/geometry/rignet_features.h"
 #include "osteon/geometry/symmetry.h"
 #include "osteon/geometry/volumetric_geodesic.h"
+#include "osteon/geometry/vote_features.h"
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/skin/distance_weights.h"
@@ -77,7 +78,7 @@ Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stage
 }
 
 JointCandidates candidates(const Body& body, const infer::RignetModels& models) {
-  const infer::JointVotes votes = models.votes(body.graph);
+  const infer::JointVotes votes = models.votes(body.graph, geometry::vote_rows(geometry::vote_features(body.working.mesh)));
   JointCandidates out;
   for (Eigen::Index v = 0; v < votes.attention.rows(); ++v) {
     out.positions.push_back(body.positions()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose());
@@ -170,7 +171,7 @@ nets::BindArrays choices_of(const Body& body, const geometry::BoneList& bones, c
   const PerVertex<Vec3f> normals = vertex_normals(body.working.mesh);
   const geometry::BindInputs inputs = geometry::bind_inputs(body.positions(), normals.raw(), bones, nearest, of_nearest);
   nets::BindArrays choices;
-  choices.add(inputs.features, inputs.offsets);
+  choices.add(inputs.features, inputs.offsets, inputs.bones);
   return choices;
 }
 

@@ -3,6 +3,7 @@
 
 #include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
+#include "osteon/nets/voting.h"
 #include "osteon/train/fused_ops.h"
 #include "osteon/train/torch_ops.h"
 
@@ -22,7 +23,7 @@ at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
     case Network::attention:
       return nets::rignet::mask_net(b, mesh);
     case Network::votes:
-      return nets::rignet::vote_net(b, mesh);
+      return nets::vote_net(b, mesh, b.tensor(inputs.vote_features, inputs.mesh.batch.rows(), nets::vote_features));
     case Network::bones:
       return nets::rignet::bone_net(b, mesh, nets::on_backend(b, inputs.joints), nets::on_backend(b, inputs.pairs));
     case Network::root:

@@ -109,7 +109,10 @@ OSTEON_HOT void sum_rows(const RowGroups& groups, const float* x, std::int64_t w
 
 OSTEON_HOT void row_maximum(const Rows& x, std::int64_t first, std::int64_t last, float* best, std::int32_t* arg) {
   const std::int64_t width = x.width;
-  for (std::int64_t c = 0; c < width; ++c) best[c] = -std::numeric_limits<float>::infinity();
+  for (std::int64_t c = 0; c < width; ++c) {
+    best[c] = -std::numeric_limits<float>::infinity();
+    arg[c] = static_cast<std::int32_t>(first);  // columns that are no numbers have a place too: the gradient is written there
+  }
   for (std::int64_t i = first; i < last; ++i) {
     const float* row = x.values + i * width;
 #pragma GCC ivdep

@@ -40,7 +40,7 @@ Network network_of(Task task) {
 // them, and two thirds of the head's channels never fire. With these figures they begin small and around zero.
 void quieten_global_features(Network network, Parameters& parameters) {
   if (network == Network::bones || network == Network::root) return;  // 64 and 128 channels beside as many others: no trouble
-  if (network == Network::bind) return;                               // has none
+  if (network == Network::bind || network == Network::votes) return;  // not more than 256 beside 455
   const char* last_norm = network == Network::skin ? "global.1.norm" : "global.0.norm";
   parameters.at(std::string(last_norm) + ".weight").fill_(0.2);
   parameters.at(std::string(last_norm) + ".bias").fill_(-0.7);
@@ -71,7 +71,8 @@ Candidates candidates(Task task, Model& model, const dataset::Batch& batch, cons
   Tensor displacement = run(network_of(task), model, batch, options), attention;
   if (task == Task::votes) {
     attention = displacement.narrow(1, 3, 1);
-    displacement = displacement.narrow(1, 0, 3);
+    const Tensor to_middle = tensor_of(batch.inputs.vote_features, nets::vote_features, options.device).narrow(1, 3, 3);
+    displacement = to_middle + displacement.narrow(1, 0, 3);
   }
   if (task == Task::collapse) attention = run(Network::attention, model, batch, options);
   return {tensor_of(batch.inputs.mesh.positions, 3, options.device) + displacement, attention,
@@ -91,7 +92,7 @@ Tensor collapse_loss(Task task, Model& model, const dataset::Batch& batch, const
   const Tensor attention = all.attention.sigmoid();
   const std::size_t meshes = batch.targets.root.size();
   Tensor loss = displacement_loss(all, batch);
-  for (std::size_t m = 0; m < meshes; ++m) {
+  for (std::size_t m = 0; m < meshes && options.collapse_weight > 0.0; ++m) {
     const auto trail = mean_shift(rows_of_mesh(all.points, batch.inputs.mesh.batch, m), rows_of_mesh(attention, batch.inputs.mesh.batch, m),
                                   model["bandwidth"].at("h"), options.mean_shift_steps);
     const Tensor collapsed = trail_loss(trail, rows_of_mesh(all.joints, batch.inputs.joints.batch, m));

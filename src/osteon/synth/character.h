@@ -10,9 +10,27 @@
 
 namespace osteon::synth {
 
-enum class Kind { Biped, Quadruped, Bird, Fish, ManyLegged };
-constexpr std::array<Kind, 5> kKinds{Kind::Biped, Kind::Quadruped, Kind::Bird, Kind::Fish, Kind::ManyLegged};
-std::string_view name(Kind kind);     // "biped", "quadruped", "bird", "fish", "many-legged"
+enum class Kind {
+  Biped,
+  Quadruped,
+  Bird,
+  Fish,
+  Serpent,
+  Insect,
+  Spider,
+  ManyLegged,
+  ManyArmed,
+  Winged,
+  TailedBiped,
+  Robot,
+  Blob,
+  BlockyAnimal,
+  BlockyHumanoid
+};
+constexpr std::array<Kind, 15> kKinds{Kind::Biped,       Kind::Quadruped, Kind::Bird,       Kind::Fish,         Kind::Serpent,
+                                      Kind::Insect,      Kind::Spider,    Kind::ManyLegged, Kind::ManyArmed,    Kind::Winged,
+                                      Kind::TailedBiped, Kind::Robot,     Kind::Blob,       Kind::BlockyAnimal, Kind::BlockyHumanoid};
+std::string_view name(Kind kind);     // "biped", "many-legged", ...: the words of its name in small letters
 Kind kind_of(std::string_view name);  // throws Error that lists the names
 
 struct CharacterOptions {

@@ -57,6 +57,9 @@ void add_synth_command(CLI::App& app) {
   command->add_option("--cells", arguments->options.cells, "Fineness: cells along the longest side")
       ->check(CLI::Range(16, 2048))
       ->capture_default_str();
+  command->add_flag_callback(
+      "--smooth", [arguments] { arguments->options.finish = synth::Finish::Smooth; },
+      "Small faces everywhere; otherwise the seed may choose few large ones");
   command->add_flag("--bare", arguments->bare, "Only the mesh, as OBJ");
   command->add_option("--sheet", arguments->sheet, "Only a picture of so many characters of the kind, or of each kind where none is given");
   command->add_option("-o,--output", arguments->output, "The GLB to write (with --bare: the OBJ; with --sheet: the PNG)")->required();

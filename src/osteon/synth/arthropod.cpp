@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -28,7 +27,7 @@ struct Proportions {
     stance = random.uniform(0.6f, 1.8f);
     head = random.uniform(0.8f, 1.9f);
     legs = random.uniform(0.8f, 1.5f);
-    leg_joints = 2 + static_cast<int>(random.below(3));
+    leg_joints = 1 + static_cast<int>(random.below(4));
     belly_joints = 1 + static_cast<int>(random.below(2));
     mandibles = random.below(3) == 0;
     eyes = random.below(2) == 0;
@@ -92,11 +91,11 @@ class ArthropodMaker {
     const auto at = [&](float reach, float y) { return Vec3f(Vec3f(hip.x(), y * s_, hip.z()) + reach * p_.reach * s_ * out); };
     const float lift = height() / s_, r = 0.0085f * p_.legs * b_;
     const std::string name = "Leg" + std::string(1, static_cast<char>('A' + leg));
-    const std::vector<ChainPoint> shape{{name + "Coxa", hip, 1.1f * r},
+    const std::vector<ChainPoint> shape{{joint_if(p_.leg_joints > 0, name + "Coxa"), hip, 1.1f * r},
                                         {joint_if(p_.leg_joints > 3, name + "Femur"), at(0.02f, lift + 0.008f), 1.1f * r},
                                         {joint_if(p_.leg_joints > 1, name + "Tibia"), at(0.068f, lift + 0.042f), 0.9f * r},
                                         {joint_if(p_.leg_joints > 2, name + "Tarsus"), at(0.112f, 0.4f * lift), 0.72f * r},
-                                        {joint_if(habits_.ends, name + "End"), at(0.135f, 0.005f), 0.55f * r}};
+                                        {joint_if(habits_.ends && p_.leg_joints > 0, name + "End"), at(0.135f, 0.005f), 0.55f * r}};
     add_chain(body_, thorax_, Rows::Paired, shape, 0.8f);
   }
 
@@ -131,10 +130,11 @@ class ArthropodMaker {
 Body make_insect(Random& random) {
   Proportions proportions(random, 3);
   proportions.antennae = random.below(4) != 0;
-  proportions.leg_joints = std::min(proportions.leg_joints, 3);
+  proportions.leg_joints = static_cast<int>(random.below(4));
   if (random.below(2) == 0) {
     proportions.wings = WingShape{.style = WingStyle::Webbed};
-    proportions.wings->span = random.uniform(0.12f, 0.25f);
+    proportions.build *= random.uniform(1.0f, 1.8f);
+    proportions.wings->span = random.uniform(0.12f, 0.35f);
     proportions.wings->chord = random.uniform(0.25f, 0.5f);
     proportions.wings->rise = random.uniform(0.1f, 0.8f);
     proportions.wings->sweep = random.uniform(0.0f, 0.8f);

@@ -7,6 +7,7 @@
 #include "osteon/synth/chain.h"
 #include "osteon/synth/creatures.h"
 #include "osteon/synth/hand.h"
+#include "osteon/synth/pieces.h"
 
 namespace osteon::synth {
 namespace {
@@ -24,6 +25,7 @@ class BipedMaker {
     add_leg();
     for (int pair = 0; pair < p_.arm_pairs; ++pair) add_arm(pair);
     if (p_.tail > 0.0f) add_tail();
+    add_outfit();
     return std::move(body_);
   }
 
@@ -35,22 +37,15 @@ class BipedMaker {
 
   // Hips wide, waist narrow, chest wide; all flatter from front to back, but for a paunch.
   void add_trunk() {
-    std::vector<ChainPoint> shape;
-    for (const auto& [t, factor] : {std::pair(-0.06f, 1.0f), {0.1f, 0.95f}, {0.3f, 0.85f}, {0.5f, 0.9f}, {0.75f, 1.03f}, {0.9f, 0.75f}})
-      shape.push_back(
-          {"", on_trunk(t) + Vec3f(0, 0, std::max(p_.belly - 1.2f, 0.0f) * 0.1f * b_ * (t > 0.2f && t < 0.6f)), factor * girth(t)});
-    // The root stands between the hip joints or above them; the spine's joints share the rest.
-    const float root = 0.12f * habits_.root;
-    std::vector<ChainPoint> lower{shape[0], {"", on_trunk(0.16f), 0.92f * girth(0.16f)}}, upper(shape.begin() + 2, shape.end());
-    lower.insert(lower.begin() + 1, {"Hips", on_trunk(root), girth(root)});
-    lower.front() = {"", on_trunk(-0.06f), girth(0)};
-    hips_ = body_.joint("Hips", std::nullopt, on_trunk(root));
-    lower[1].name.clear();
     const RoundCone flat{{}, 0, 0, Vec3f::UnitZ(), std::clamp(0.74f + 0.2f * (p_.belly - 1.0f), 0.7f, 0.95f)};
-    add_chain(body_, hips_, Rows::Single, lower, 0.6f, flat);
-    upper.insert(upper.begin(), lower.back());
-    const auto spine = add_chain(body_, hips_, Rows::Single, jointed(upper, "Spine", habits_.spine), 0.6f, flat);
-    chest_ = spine.back();
+    const float waist = 0.16f, paunch = std::max(p_.belly - 1.2f, 0.0f) * 0.1f * b_;
+    hips_ = body_.joint("Hips", std::nullopt, on_trunk(0.12f * habits_.root));
+    add_chain(body_, hips_, Rows::Single, {{"", on_trunk(-0.06f), girth(0.0f)}, {"", on_trunk(waist), 0.92f * girth(waist)}}, 0.6f, flat);
+    std::vector<ChainPoint> shape;
+    for (const auto& [t, width] : {std::pair(waist, 0.92f), {0.3f, 0.85f}, {0.5f, 0.9f}, {0.75f, 1.03f}, {0.9f, 0.75f}})
+      shape.push_back({"", on_trunk(t) + Vec3f(0, 0, t > 0.2f && t < 0.6f ? paunch : 0.0f), width * girth(t)});
+    const auto spine = add_chain(body_, hips_, Rows::Single, jointed(shape, "Spine", habits_.spine), 0.6f, flat);
+    chest_ = spine.empty() ? hips_ : spine.back();
   }
 
   void add_neck_and_head() {
@@ -63,16 +58,19 @@ class BipedMaker {
   }
 
   void add_leg() {
-    const float hip = hip_height(), r = 0.088f * limb_ * (0.7f + 0.3f * p_.build), x = std::max(0.62f * girth(0.0f), 1.08f * r);
+    const float hip = hip_height(), r = 0.088f * limb_ * (0.7f + 0.3f * p_.build), x = std::max(0.62f * girth(0.0f), 1.2f * r);
     const float f = p_.feet * s_, ankle_y = std::min(0.085f * f, 0.3f * hip);
     const float forward = 0.3f * hip * std::sin(p_.knee);
     const Vec3f thigh(x, hip - 0.03f * s_, 0), knee(x + 0.01f * s_, 0.5f * hip, forward + 0.012f * s_),
         ankle(x + 0.015f * s_, ankle_y, -0.02f * s_);
     const Vec3f ball = ankle + Vec3f(0.012f * f, 0.032f * f - ankle_y, 0.12f * f), toe = ball + Vec3f(0.004f, -0.004f, 0.06f) * f;
     const Vec3f calf = knee + 0.33f * (ankle - knee) + Vec3f(0, 0, -0.018f * limb_);
-    const auto leg = add_chain(
-        body_, hips_, Rows::Paired,
-        {{"UpLeg", thigh, r}, {"Leg", knee, 0.62f * r}, {"", calf, 0.65f * r}, {joint_if(habits_.ankles, "Foot"), ankle, 0.45f * r}}, 0.8f);
+    const auto leg = add_chain(body_, hips_, Rows::Paired,
+                               {{"UpLeg", thigh, r},
+                                {joint_if(habits_.knees, "Leg"), knee, 0.62f * r},
+                                {"", calf, 0.65f * r},
+                                {joint_if(habits_.ankles, "Foot"), ankle, 0.45f * r}},
+                               0.4f);
     const JointId foot = leg.back();
     body_.clothe(foot, {{ankle + Vec3f(0, 0.036f * f - ankle_y, -0.02f * f), ball}, 0.042f * f, 0.036f * f}, 0.035f * f);
     body_.clothe(foot, {{ankle, ankle + Vec3f(0, 0.03f * f - ankle_y, 0.02f * f)}, 0.42f * r, 0.04f * f}, 0.03f * f);
@@ -111,10 +109,44 @@ class BipedMaker {
     const Vec3f muscle = elbow + 0.3f * (wrist - elbow);
     const auto collar = add_chain(body_, chest_, Rows::Paired,
                                   {{joint_if(habits_.clavicles, name + "Shoulder"), clavicle, 1.2f * r}, {"", shoulder, 1.12f * r}}, 0.9f);
-    const auto arm = add_chain(
-        body_, collar.empty() ? chest_ : collar.back(), Rows::Paired,
-        {{name + "Arm", shoulder, 1.05f * r}, {name + "ForeArm", elbow, 0.74f * r}, {"", muscle, 0.78f * r}, {"", wrist, 0.52f * r}}, 0.7f);
-    add_hand(body_, arm.back(), wrist, bent, {p_.hands * s_, p_.fingers, name}, habits_);
+    const auto arm = add_chain(body_, collar.empty() ? chest_ : collar.back(), Rows::Paired,
+                               {{name + "Arm", shoulder, 1.05f * r},
+                                {joint_if(habits_.knees, name + "ForeArm"), elbow, 0.74f * r},
+                                {"", muscle, 0.78f * r},
+                                {"", wrist, 0.52f * r}},
+                               0.7f);
+    const JointId hand = add_hand(body_, arm.back(), wrist, bent, {p_.hands * s_, p_.fingers, name}, habits_);
+    if (pair == 0) add_held(hand, wrist + 0.06f * p_.hands * s_ * bent, bent);
+  }
+
+  // What the right hand holds points forwards; a shield on the left stands beside the hand.
+  void add_held(JointId hand, const Vec3f& palm, const Vec3f& arm) {
+    const Vec3f down = (arm.cross(Vec3f::UnitZ()).y() > 0 ? -1.0f : 1.0f) * arm.cross(Vec3f::UnitZ()).normalized();
+    const Vec3f along = (Vec3f::UnitZ() - arm * arm.z()).normalized();
+    const auto mirrored = [](const Vec3f& p) { return Vec3f(-p.x(), p.y(), p.z()); };
+    if (p_.outfit.left != Held::None) body_.attach(hand, held(p_.outfit.left, palm, along, -down, s_), Copies::One);
+    if (p_.outfit.right != Held::None)
+      body_.attach(body_.mirrored(hand), held(p_.outfit.right, mirrored(palm), mirrored(along), mirrored(down), s_), Copies::One);
+  }
+
+  void add_outfit() {
+    if (p_.outfit.backpack) {
+      const float width = 1.5f * girth(0.8f);
+      body_.attach(chest_, backpack(on_trunk(0.7f) - Vec3f(0, 0, 0.7f * girth(0.8f)), width, 1.3f * width), Copies::One);
+    }
+    if (p_.outfit.skirt > 0.0f && p_.tail == 0.0f) add_skirt();
+    if (p_.outfit.belt) body_.attach(hips_, belt(on_trunk(0.1f), 1.08f * girth(0.1f), 0.85f * girth(0.1f), 0.05f * s_), Copies::One);
+  }
+
+  // A tube from the waist over the thighs.
+  void add_skirt() {
+    const float top = girth(0.15f), length = p_.outfit.skirt * 0.8f * hip_height(), flare = 0.35f * length;
+    std::vector<Ring> rings;
+    for (int i = 0; i <= 6; ++i) {
+      const float t = static_cast<float>(i) / 6.0f, width = 1.05f * top + t * flare + 0.05f * s_;
+      rings.push_back({on_trunk(0.15f) - Vec3f(0, t * length, 0), width, 0.85f * width});
+    }
+    body_.drape(hips_, tube(rings, 18), Copies::One);
   }
 
   void add_tail() {
@@ -169,6 +201,8 @@ BipedShape::BipedShape(Random& random) {
   head.ears = random.below(2) == 0 ? 0.0f : random.below(3) == 0 ? random.uniform(1.0f, 2.2f) : random.uniform(0.35f, 0.8f);
   head.ear_spread = random.uniform(0.0f, 1.0f);
   head.horns = random.below(6) == 0 ? random.uniform(0.5f, 1.3f) : 0.0f;
+  outfit = Outfit(random);
+  head.headgear = outfit.headgear;
 }
 
 Body make_biped(const BipedShape& shape, const Habits& habits) { return BipedMaker(shape, habits).make(); }

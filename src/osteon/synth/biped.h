@@ -14,6 +14,7 @@ struct BipedShape {
   int arm_pairs, fingers;                                               // fingers beside the thumb; 0: a mitten
   float tail, tail_thickness;                                           // factors; 0: none
   HeadShape head;
+  Outfit outfit;
 
   explicit BipedShape(Random& random);
 };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "osteon/synth/accessories.h"
 #include "osteon/synth/chain.h"
 #include "osteon/synth/creatures.h"
-#include "osteon/synth/head.h"
+#include "osteon/synth/habits.h"
 #include "osteon/synth/pieces.h"
 
 namespace osteon::synth {
@@ -17,6 +18,7 @@ struct Proportions {
   float eyes, horns, ears;          // radii of the body; 0: none
   float arms, legs, tail, wings;    // 0: none
   int levels;                       // joints up the body
+  Headgear headgear;
   bool jointed_arms, jointed_legs, jointed_face, cyclops;
 
   explicit Proportions(Random& random) {
@@ -25,7 +27,7 @@ struct Proportions {
     width = random.uniform(0.28f, 0.5f);
     taper = random.uniform(0.5f, 1.1f);
     belly = random.uniform(0.0f, 0.25f);
-    eyes = some(0.8f, 0.12f, 0.32f);
+    eyes = some(0.8f, 0.15f, 0.36f);
     horns = some(0.35f, 0.3f, 0.8f);
     ears = some(0.35f, 0.3f, 1.0f);
     arms = some(0.6f, 0.5f, 1.2f);
@@ -37,6 +39,7 @@ struct Proportions {
     jointed_legs = random.below(2) == 0;
     jointed_face = random.below(3) == 0;
     cyclops = random.below(4) == 0;
+    headgear = horns == 0.0f && ears == 0.0f && random.below(2) == 0 ? Outfit(random).headgear : Headgear::None;
   }
 };
 
@@ -48,6 +51,7 @@ class BlobMaker {
   Body make() {
     add_trunk();
     add_face();
+    if (p_.headgear != Headgear::None) add_headgear();
     if (p_.arms > 0.0f) add_arm();
     if (p_.legs > 0.0f) add_leg();
     if (p_.tail > 0.0f) add_tail();
@@ -88,11 +92,11 @@ class BlobMaker {
   void add_face() {
     const float r = p_.eyes * r_;
     if (r > 0.0f && p_.cyclops) {
-      const Vec3f at = on_skin(0.68f, 0.0f, 0.9f);
+      const Vec3f at = on_skin(0.68f, 0.0f, 0.94f);
       body_.attach(p_.jointed_face ? body_.joint("Eye", head_, {0, at.y(), at.z()}) : head_, ball({0, at.y(), at.z()}, 1.3f * r),
                    Copies::One);
     } else if (r > 0.0f) {
-      const Vec3f at = on_skin(0.68f, 0.5f, 0.9f);
+      const Vec3f at = on_skin(0.68f, 0.5f, 0.94f);
       body_.attach(p_.jointed_face ? body_.pair("Eye", head_, at) : head_, ball(at, r));
     }
     const auto crown = [&](float length, float thickness, float spread) {
@@ -108,6 +112,11 @@ class BlobMaker {
       for (const ChainPoint& point : crown(p_.horns + 0.4f, 0.18f, 0.7f)) rings.push_back({point.position, point.radius, point.radius});
       body_.attach(head_, tube(rings, 6, Vec3f::UnitZ()));
     }
+  }
+
+  void add_headgear() {
+    const float r = radius(1.0f);
+    body_.attach(head_, headgear(p_.headgear, {0, high(), 0}, Vec3f(r, r, kFlatness * r)), Copies::One);
   }
 
   void add_arm() {

@@ -35,7 +35,7 @@ class BlockyMaker {
 
   Body make_animal() {
     const Vec3f t = p_.trunk, middle(0, p_.leg.y() + 0.48f * t.y(), 0);
-    root_ = body_.joint("Body", std::nullopt, middle - Vec3f(0, 0, 0.35f * habits_.root * t.z()));
+    root_ = body_.joint("Body", std::nullopt, middle - Vec3f(0, 0, (0.03f + 0.32f * habits_.root) * t.z()));
     chest_ = root_;
     if (p_.split) {
       chest_ = body_.joint("Chest", root_, middle + Vec3f(0, 0, 0.05f * t.z()));

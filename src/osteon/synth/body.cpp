@@ -87,14 +87,13 @@ void Body::clothe(JointId joint, const RoundCone& cone, float blend) {
   widths_[joint] = widths_[twins_[joint]] = std::max(widths_[joint], width);
 }
 
-void Body::attach(JointId joint, const TriangleMesh& mesh, Copies copies) {
-  pieces_.push_back({joint, Bond::Rigid, mesh});
-  if (copies == Copies::Both) pieces_.push_back({twins_[joint], Bond::Rigid, mirrored_mesh(mesh)});
-}
+void Body::attach(JointId joint, const TriangleMesh& mesh, Copies copies) { add_piece({joint, Bond::Rigid, mesh}, copies); }
 
-void Body::drape(JointId joint, const TriangleMesh& mesh) {
-  pieces_.push_back({joint, Bond::Soft, mesh});
-  pieces_.push_back({twins_[joint], Bond::Soft, mirrored_mesh(mesh)});
+void Body::drape(JointId joint, const TriangleMesh& mesh, Copies copies) { add_piece({joint, Bond::Soft, mesh}, copies); }
+
+void Body::add_piece(const Piece& piece, Copies copies) {
+  pieces_.push_back(piece);
+  if (copies == Copies::Both) pieces_.push_back({twins_[piece.joint], piece.bond, mirrored_mesh(piece.mesh)});
 }
 
 std::vector<Body::SidedPart> Body::all_parts() const {

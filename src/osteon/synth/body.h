@@ -48,8 +48,8 @@ class Body {
 
   // Adds a rigid piece, with Both also its mirror image on the joint's twin.
   void attach(JointId joint, const TriangleMesh& mesh, Copies copies = Copies::Both);
-  // Adds a soft piece, such as the web of a wing, and its mirror image. Pre: the limb from `joint` on is clothed.
-  void drape(JointId joint, const TriangleMesh& mesh);
+  // Adds a soft piece, such as the web of a wing, with Both also its mirror image. Pre: the limb from `joint` on is clothed.
+  void drape(JointId joint, const TriangleMesh& mesh, Copies copies = Copies::Both);
 
   const Skeleton& skeleton() const { return skeleton_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
@@ -70,6 +70,7 @@ class Body {
   std::vector<Influence> weights(const Vec3f& p, JointId top = JointId{0}) const;
 
  private:
+  void add_piece(const Piece& piece, Copies copies);
   struct Part {
     JointId joint;
     RoundCone cone;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/synth/character.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "osteon/base/error.h"
 #include "osteon/base/parallel.h"
 #include "osteon/base/random.h"
+#include "osteon/geometry/decimate.h"
 #include "osteon/mesh/shapes.h"
 #include "osteon/synth/creatures.h"
 #include "osteon/synth/polygonize.h"
@@ -45,7 +49,14 @@ void add(Rig& rig, const TriangleMesh& mesh, RowOf&& row_of) {
   rig.mesh = rig.mesh.positions.empty() ? mesh : shapes::merged(rig.mesh, mesh);
 }
 
-TriangleMesh skin_of(const Body& body, int cells) {
+bool is_faceted(Finish finish, Random& random) { return finish == Finish::BySeed ? random.uniform() < 0.4f : finish == Finish::Faceted; }
+
+// Of a faceted skin, more for bodies of many parts.
+std::size_t vertices_wanted(Random& random, std::size_t joints) {
+  return std::max(static_cast<std::size_t>(300.0f * std::pow(8.0f, random.uniform())), 20 * joints);
+}
+
+TriangleMesh smooth_skin(const Body& body, int cells) {
   const Eigen::AlignedBox3f box = body.box();
   return polygonize([&](const Vec3f& centre, float radius) { return body.near(centre, radius); }, box,
                     box.sizes().maxCoeff() / static_cast<float>(cells));
@@ -73,11 +84,17 @@ Kind kind_of(std::string_view name) {
 
 Rig make_character(Kind kind, std::uint64_t seed, const CharacterOptions& options) {
   if (options.cells < 16 || options.cells > 2048) throw Error("{} cells along the character; expected 16 to 2048", options.cells);
-  Random random(seed);
+  Random random = Random(seed).fork(static_cast<std::uint64_t>(kind) + 1);
+  Random style = random.fork(1);
   const Body body = info(kind).make(random);
   Rig rig;
   rig.skeleton = body.skeleton();
-  if (body.has_skin()) add(rig, skin_of(body, options.cells), [&](const Vec3f& p) { return body.weights(p); });
+  if (body.has_skin()) {
+    TriangleMesh skin = smooth_skin(body, options.cells);
+    if (is_faceted(options.finish, style))
+      skin = geometry::decimate(skin, {.target_vertices = vertices_wanted(style, body.skeleton().size())}).mesh;
+    add(rig, skin, [&](const Vec3f& p) { return body.weights(p); });
+  }
   for (const Piece& piece : body.pieces())
     add(rig, piece.mesh, [&](const Vec3f& p) {
       return piece.bond == Bond::Soft ? body.weights(p, piece.joint) : std::vector<Influence>{{piece.joint, 1.0f}};

@@ -9,12 +9,14 @@ Habits::Habits(Random& random) {
   const auto number = [&](int least, int most) {
     return least + static_cast<int>(random.below(static_cast<std::size_t>(most - least + 1)));
   };
-  spine = detail < 0.25f ? number(1, 2) : number(1, 4);
-  neck = detail < 0.25f ? number(0, 1) : number(0, 2);
-  tail = detail < 0.25f ? number(2, 3) : number(2, 6);
+  const bool plain = detail < 0.15f;  // as for crowds and small toys
+  knees = !plain;
+  spine = plain ? number(0, 1) : number(1, detail < 0.4f ? 2 : 4);
+  neck = plain ? 0 : number(0, detail < 0.4f ? 1 : 2);
+  tail = plain ? 1 : number(2, detail < 0.4f ? 3 : 6);
   phalanges = chance(0.0f) ? number(detail < 0.5f ? 1 : 2, 3) : 0;
-  clavicles = chance(0.3f);
-  ankles = chance(0.5f);
+  clavicles = !plain && chance(0.3f);
+  ankles = !plain && chance(0.5f);
   toes = ankles && chance(0.1f);
   jaw = chance(-0.4f);
   eyes = chance(-0.5f);

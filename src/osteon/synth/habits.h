@@ -10,9 +10,10 @@ namespace osteon::synth {
 // Where an artist puts joints in a body whatever its shape: the same character is rigged in many ways. Drawn from a seed; habits agree
 // with one another, as who rigs fingers rarely leaves out the clavicles.
 struct Habits {
-  int spine;                                            // joints of the trunk, 1..4, the root not counted
+  bool knees;                                           // and elbows; without them a limb is one joint
+  int spine;                                            // joints of the trunk, 0..4, the root not counted
   int neck;                                             // 0..2
-  int tail;                                             // 2..6
+  int tail;                                             // 1..6
   int phalanges;                                        // joints of each finger, 0..3; 0: fingers belong to the hand
   bool clavicles, ankles, toes, jaw, eyes, ears, ends;  // ends: leaf joints at the tips, which bind nothing
   float root;                                           // height of the root: 0 between the hip joints .. 1 at the waist

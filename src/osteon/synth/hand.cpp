@@ -20,7 +20,7 @@ void add_finger(Body& body, JointId hand, const std::string& name, const Vec3f& 
 
 }  // namespace
 
-void add_hand(Body& body, JointId forearm, const Vec3f& wrist, const Vec3f& along, const HandShape& shape, const Habits& habits) {
+JointId add_hand(Body& body, JointId forearm, const Vec3f& wrist, const Vec3f& along, const HandShape& shape, const Habits& habits) {
   const float s = shape.size;
   const Vec3f front = (Vec3f::UnitZ() - along * along.z()).normalized(), back_of_hand = front.cross(along).normalized();
   const Vec3f knuckles = wrist + 0.085f * s * along;
@@ -31,7 +31,7 @@ void add_hand(Body& body, JointId forearm, const Vec3f& wrist, const Vec3f& alon
   add_finger(body, hand, name + "Thumb", wrist + (0.028f * along + 0.024f * front) * s, thumb_way, 0.03f * s, 0.0135f * s, habits);
   if (shape.fingers == 0) {
     add_finger(body, hand, name + "Mitten", knuckles, along, 0.03f * s, 0.033f * s, habits);
-    return;
+    return hand;
   }
   const char* names[] = {"Index", "Middle", "Ring", "Pinky"};
   const float lengths[] = {0.030f, 0.033f, 0.031f, 0.025f};
@@ -42,6 +42,7 @@ void add_hand(Body& body, JointId forearm, const Vec3f& wrist, const Vec3f& alon
     const Vec3f way = (along + 2.6f * offset * front).normalized();
     add_finger(body, hand, name + names[f], knuckles + offset * s * front, way, lengths[f] * s, std::max(radius, 0.0125f) * s, habits);
   }
+  return hand;
 }
 
 }  // namespace osteon::synth

@@ -13,7 +13,7 @@ struct HandShape {
 };
 
 // Adds "LeftHand" and its fingers below the forearm on the left, and their twins. The palm lies flat, facing down where the arm points
-// sideways; the thumb points forwards. `along` is of unit length.
-void add_hand(Body& body, JointId forearm, const Vec3f& wrist, const Vec3f& along, const HandShape& shape, const Habits& habits);
+// sideways; the thumb points forwards. `along` is of unit length. Returns the left hand.
+JointId add_hand(Body& body, JointId forearm, const Vec3f& wrist, const Vec3f& along, const HandShape& shape, const Habits& habits);
 
 }  // namespace osteon::synth

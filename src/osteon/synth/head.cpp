@@ -23,6 +23,8 @@ class HeadMaker {
     if (shape_.eyes > 0.0f) add_eyes();
     if (shape_.ears > 0.0f) add_ears();
     if (shape_.horns > 0.0f) add_horns();
+    if (shape_.headgear != Headgear::None)
+      body_.attach(head_, headgear(shape_.headgear, skull_, Vec3f(shape_.width, 1, 1.04f) * r_), Copies::One);
     return head_;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "osteon/synth/accessories.h"
 #include "osteon/synth/body.h"
 #include "osteon/synth/habits.h"
 
@@ -17,6 +18,7 @@ struct HeadShape {
   float ears = 0.0f;          // length; 0: none
   float ear_spread = 0.4f;    // 0 upwards .. 1 sideways
   float horns = 0.0f, horn_curl = 0.3f;
+  Headgear headgear = Headgear::None;
 };
 
 // Adds "Head" below `parent`, facing +z, with "Jaw", "LeftEye", "LeftEar", ... as the habits have it; returns the head's joint.

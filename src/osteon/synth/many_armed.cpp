@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,7 +64,9 @@ Body make_many_armed(Random& random) {
   shape.arm_pairs = 2 + static_cast<int>(random.below(2));
   shape.torso *= 1.15f;
   shape.arm_angle = random.uniform(0.0f, 0.6f);
-  return make_biped(shape, Habits(random));
+  Habits habits(random);
+  habits.phalanges = std::min(habits.phalanges, 1);  // or there would be more fingers than all else
+  return make_biped(shape, habits);
 }
 
 }  // namespace osteon::synth

@@ -76,7 +76,7 @@ class QuadrupedMaker {
     add_chain(
         body_, hips_, Rows::Paired,
         {{"UpLeg", {x, y - 0.03f * b_, z}, 0.074f * std::max(b_, l_)},
-         {"Leg", {out, 0.56f * y, z + 0.055f * p_.bend * s_}, 0.045f * l_},
+         {joint_if(habits_.knees, "Leg"), {out, 0.56f * y, z + 0.055f * p_.bend * s_}, 0.045f * l_},
          {joint_if(habits_.ankles, "Foot"), {out, 0.28f * y, z - 0.07f * p_.bend * s_}, 0.03f * l_},
          {joint_if(habits_.toes, "Toes"), {out, 0.034f * s_, z - 0.035f * p_.bend * s_}, 0.031f * l_},
          {joint_if(habits_.toes && habits_.ends, "ToesEnd"), {out, 0.028f * s_, z - 0.035f * p_.bend * s_ + 0.055f * s_}, 0.029f * l_}},
@@ -88,7 +88,7 @@ class QuadrupedMaker {
     add_chain(body_, chest_, Rows::Paired,
               {{joint_if(habits_.clavicles, "Shoulder"), {x, y + 0.02f * b_, z - 0.02f * s_}, 0.058f * b_},
                {"Arm", {out, 0.78f * y, z + 0.04f * p_.bend * s_}, 0.054f * std::max(b_, l_)},
-               {"ForeArm", {out, 0.52f * y, z - 0.025f * p_.bend * s_}, 0.042f * l_},
+               {joint_if(habits_.knees, "ForeArm"), {out, 0.52f * y, z - 0.025f * p_.bend * s_}, 0.042f * l_},
                {joint_if(habits_.ankles, "Hand"), {out, 0.2f * y, z}, 0.03f * l_},
                {joint_if(habits_.toes, "Fingers"), {out, 0.034f * s_, z + 0.01f * s_}, 0.031f * l_},
                {joint_if(habits_.toes && habits_.ends, "FingersEnd"), {out, 0.028f * s_, z + 0.06f * s_}, 0.029f * l_}},
@@ -135,6 +135,7 @@ QuadrupedShape::QuadrupedShape(Random& random) {
   head.ear_spread = random.uniform();
   head.horns = random.below(4) == 0 ? random.uniform(0.6f, 2.0f) : 0.0f;
   head.horn_curl = random.uniform(-1.0f, 1.0f);
+  if (random.below(10) == 0) head.headgear = Outfit(random).headgear;
 }
 
 Body make_quadruped(const QuadrupedShape& shape, const Habits& habits) { return QuadrupedMaker(shape, habits).make(); }

@@ -90,7 +90,7 @@ class TailedMaker {
     const Vec3f ankle(out, 0.09f * s_, -0.05f * s_), ball(out, 0.045f * s_, 0.05f * s_);
     const auto leg = add_chain(body_, hips_, Rows::Paired,
                                {{"UpLeg", {x, y - 0.02f * s_, 0.02f * s_}, 0.13f * b_},
-                                {"Leg", {out, 0.55f * y, 0.16f * s_}, 0.085f * b_},
+                                {joint_if(habits_.knees, "Leg"), {out, 0.55f * y, 0.16f * s_}, 0.085f * b_},
                                 {joint_if(habits_.ankles, "Foot"), {out, 0.28f * y, -0.12f * s_}, 0.05f * b_},
                                 {joint_if(habits_.toes, "Toes"), ankle + Vec3f(0, -0.02f, 0.04f) * s_, 0.048f * b_}},
                                0.8f);
@@ -111,7 +111,7 @@ class TailedMaker {
     const float r = 0.045f * b_;
     const auto arm = add_chain(body_, chest_, Rows::Paired,
                                {{"Arm", shoulder, 1.2f * r},
-                                {"ForeArm", elbow, 0.85f * r},
+                                {joint_if(habits_.knees, "ForeArm"), elbow, 0.85f * r},
                                 {joint_if(habits_.ankles, "Hand"), wrist, 0.7f * r},
                                 {"", tip, 0.8f * r}},
                                0.7f);

@@ -9,8 +9,8 @@
 namespace osteon::app {
 
 struct ContactSheetOptions {
-  int columns = 9;
-  int tile = 180;  // width and height of each picture, pixels
+  int columns = 10;
+  int tile = 136;  // width and height of each picture, pixels
 };
 
 // All characters in one picture, in rows, each seen at an angle in the colours of its skin weights with its skeleton showing through.

@@ -23,7 +23,7 @@ struct Subject {
 };
 
 Subject subject(std::int64_t vertices) {
-  const Rig rig = synth::make_character(synth::Kind::Biped, 1, {.cells = 160});
+  const Rig rig = synth::make_character(synth::Kind::Biped, 1, {.cells = 160, .finish = synth::Finish::Smooth});
   WorkingMesh working = make_working_mesh(rig.mesh, {.target_vertices = static_cast<std::size_t>(vertices)});
   Subject out{std::move(working.mesh), {}, {}, {}};
   for (JointId j : rig.skeleton.names.ids()) {

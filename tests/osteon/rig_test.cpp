@@ -20,7 +20,7 @@ class RigCommand : public testing::Test {
   void SetUp() override {
     if (!std::getenv("OSTEON_MODELS") && !std::filesystem::exists(OSTEON_MODELS_FOLDER "/rignet"))
       GTEST_SKIP() << "models/rignet is not there";
-    mesh_ = synth::make_character(synth::Kind::Biped, 3, {96}).mesh;
+    mesh_ = synth::make_character(synth::Kind::Biped, 3, {96, synth::Finish::Smooth}).mesh;
     io::save_obj(folder_ / "hero.obj", mesh_);
   }
 
@@ -85,8 +85,8 @@ TEST_F(RigCommand, the_same_rig_for_any_order_of_vertices) {
 }
 
 TEST_F(RigCommand, a_given_skeleton_is_kept) {
-  const Rig puppet = synth::make_character(synth::Kind::Biped, 3, {96});
-  ASSERT_EQ(osteon(folder_, "synth biped --seed 3 --cells 96 -o given.glb").code, 0);
+  const Rig puppet = synth::make_character(synth::Kind::Biped, 3, {96, synth::Finish::Smooth});
+  ASSERT_EQ(osteon(folder_, "synth biped --seed 3 --smooth --cells 96 -o given.glb").code, 0);
   ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --skeleton given.glb").code, 0);
   const io::Asset asset = io::load(folder_ / "hero.glb");
   EXPECT_EQ(asset.skeleton->names, puppet.skeleton.names);

@@ -1,103 +1,137 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "osteon/synth/chain.h"
 #include "osteon/synth/creatures.h"
+#include "osteon/synth/head.h"
+#include "osteon/synth/wing.h"
 
 namespace osteon::synth {
 namespace {
 
-// In metres; lengths of a crow, standing with its wings spread, where a factor is 1.
+// In metres; lengths of a crow where a factor is 1.
 struct Proportions {
-  float size, build, legs, neck, wings, beak, tail;  // factors
-  float dihedral;                                    // how far the wings rise, per metre
+  float size, build, legs, feet, neck, tail, pitch;  // factors; pitch of the trunk above level, radians
+  bool folded;                                       // wings at the flanks, as on a hen
+  int wing_joints;
+  WingShape wings;
+  HeadShape head;
 
   explicit Proportions(Random& random) {
-    size = random.uniform(0.5f, 2.5f);
-    build = random.uniform(0.85f, 1.25f);
-    legs = random.uniform(0.7f, 2.2f);
-    neck = random.uniform(0.6f, 2.2f);
-    wings = random.uniform(0.75f, 1.35f);
-    beak = random.uniform(0.6f, 1.8f);
-    tail = random.uniform(0.7f, 1.4f);
-    dihedral = random.uniform(-0.1f, 0.35f);
+    const float toy = std::max(random.uniform(-1.0f, 1.0f), 0.0f);  // 0: as in nature .. 1: a chick
+    size = random.uniform(0.5f, 4.0f);
+    build = random.uniform(0.85f, 1.6f) * (1.0f + 0.4f * toy);
+    legs = (random.below(4) == 0 ? random.uniform(1.8f, 3.5f) : random.uniform(0.6f, 1.6f)) * (1.0f - 0.3f * toy);
+    feet = random.uniform(0.9f, 1.5f);
+    neck = (random.below(4) == 0 ? random.uniform(1.8f, 4.0f) : random.uniform(0.4f, 1.4f)) * (1.0f - 0.5f * toy);
+    tail = random.uniform(0.5f, 1.6f);
+    pitch = random.uniform(0.0f, 0.9f);
+    folded = random.below(3) == 0;
+    wing_joints = 1 + static_cast<int>(random.below(folded ? 2 : 4));
+    wings.span = random.uniform(0.28f, 0.6f) * (1.0f - 0.4f * toy);
+    wings.chord = random.uniform(0.22f, 0.4f);
+    wings.rise = random.uniform(-0.1f, 0.5f);
+    wings.sweep = random.uniform(0.0f, 0.5f);
+    head.radius = size * random.uniform(0.032f, 0.05f) * (1.0f + toy);
+    head.width = random.uniform(0.85f, 1.0f);
+    head.forward = random.uniform(0.2f, 0.6f);
+    head.snout = random.uniform(0.5f, 2.4f);
+    head.snout_width = random.uniform(0.22f, 0.4f);
+    head.eyes = random.below(2) == 0 ? random.uniform(0.18f, 0.35f) : 0.0f;
   }
 };
 
 class BirdMaker {
  public:
-  explicit BirdMaker(const Proportions& proportions) : p_(proportions), s_(proportions.size), b_(proportions.size * proportions.build) {}
+  BirdMaker(const Proportions& proportions, const Habits& habits)
+      : p_(proportions), habits_(habits), s_(proportions.size), b_(proportions.size * proportions.build) {}
 
   Body make() {
     add_trunk();
-    add_head();
-    add_wing();
+    add_neck_and_head();
+    add_tail();
+    if (p_.folded)
+      add_folded_wing();
+    else
+      add_spread_wings();
     add_leg();
     return std::move(body_);
   }
 
  private:
-  float height() const { return (0.085f + 0.1f * p_.legs) * s_; }
+  float height() const { return 0.08f * p_.legs * s_ + 0.06f * b_; }
+  // From the hips (0) to the breast (1).
+  Vec3f along(float t) const { return {0, height() + 0.13f * s_ * t * std::sin(p_.pitch), 0.13f * s_ * (t - 0.45f) * std::cos(p_.pitch)}; }
 
   void add_trunk() {
-    const float y = height();
-    const auto spine = add_chain(body_, std::nullopt, Rows::Single,
-                                 {{"Hips", {0, y, -0.06f * s_}, 0.052f * b_},
-                                  {"Spine", {0, y + 0.015f * s_, 0.0f}, 0.066f * b_},
-                                  {"Chest", {0, y + 0.03f * s_, 0.055f * s_}, 0.062f * b_},
-                                  {"", {0, y + 0.045f * s_, 0.09f * s_}, 0.046f * b_}},
-                                 0.9f);
-    hips_ = spine[0];
-    chest_ = spine[2];
-    const Vec3f base(0, y - 0.002f * s_, -0.1f * s_), way(0, -0.018f * s_, -0.1f * p_.tail * s_);
-    add_chain(body_, hips_, Rows::Single,
-              {{"Tail", base, 0.036f * b_}, {"Tail1", base + 0.8f * way, 0.036f * b_}, {"", base + 1.7f * way, 0.042f * b_}}, 0.7f,
-              {{}, 0, 0, Vec3f::UnitY(), 0.3f});
+    auto points = jointed(
+        {{"", along(0.0f), 0.052f * b_}, {"", along(0.45f), 0.066f * b_}, {"", along(0.9f), 0.06f * b_}, {"", along(1.15f), 0.045f * b_}},
+        "Spine", std::min(habits_.spine, 3));
+    points.front().name = "Hips";
+    const auto spine = add_chain(body_, std::nullopt, Rows::Single, points, 0.9f);
+    hips_ = spine.front();
+    chest_ = spine.back();
   }
 
-  void add_head() {
-    const Vec3f base = body_.at(chest_) + Vec3f(0, 0.03f, 0.035f) * s_, rise = Vec3f(0, 0.052f, 0.018f) * p_.neck * s_;
-    const Vec3f top = base + 2.0f * rise;
-    const auto neck = add_chain(body_, chest_, Rows::Single,
-                                {{"Neck", base, 0.038f * b_}, {"Neck1", base + rise, 0.029f * b_}, {"", top, 0.027f * b_}}, 0.9f);
-    const JointId head = body_.joint("Head", neck.back(), top);
-    body_.clothe(head, {{top + Vec3f(0, 0.012f, 0.004f) * s_, top + Vec3f(0, 0.012f, 0.016f) * s_}, 0.037f * s_, 0.034f * s_}, 0.025f * s_);
-    const Vec3f beak = top + Vec3f(0, 0.008f, 0.04f) * s_, tip = beak + Vec3f(0, -0.01f, 0.055f * p_.beak) * s_;
-    body_.clothe(head, {{beak, tip}, 0.016f * s_, 0.006f * s_}, 0.01f * s_);
-    add_chain(body_, head, Rows::Single,
-              {{"Jaw", beak + Vec3f(0, -0.014f, -0.008f) * s_, 0.011f * s_}, {"", tip + Vec3f(0, -0.012f, -0.012f) * s_, 0.005f * s_}},
-              0.6f);
+  void add_neck_and_head() {
+    const Vec3f base = along(1.05f) + Vec3f(0, 0.02f * b_, 0),
+                top = base + Vec3f(0, 0.1f, 0.035f) * p_.neck * s_ + Vec3f(0, 0.02f * b_, 0.01f * b_);
+    const float thick = 0.04f * b_, thin = std::min(0.026f * b_, 0.8f * p_.head.radius);
+    const int joints = p_.neck > 1.5f ? 2 + habits_.neck : habits_.neck;
+    const auto neck =
+        add_chain(body_, chest_, Rows::Single,
+                  jointed({{"", base, thick}, {"", 0.5f * (base + top), 0.5f * (thick + thin)}, {"", top, thin}}, "Neck", joints), 0.9f);
+    add_head(body_, neck.empty() ? chest_ : neck.back(), top, p_.head, habits_);
   }
 
-  void add_wing() {
-    const float span = 0.13f * p_.wings * s_;
-    const Vec3f shoulder = body_.at(chest_) + Vec3f(0.05f * b_, 0.028f * s_, -0.012f * s_);
-    const auto out = [&](float x, float z) { return Vec3f(shoulder + Vec3f(x * span, x * span * p_.dihedral, z * s_)); };
-    const RoundCone flat{{}, 0, 0, Vec3f(-p_.dihedral, 1, 0).normalized(), 0.28f};
+  void add_tail() {
+    const Vec3f base = along(-0.25f), way = Vec3f(0, -0.3f * std::sin(p_.pitch) - 0.1f, -1.0f).normalized() * 0.14f * p_.tail * s_;
+    auto points =
+        jointed({{"", base, 0.036f * b_}, {"", base + 0.5f * way, 0.038f * b_}, {"", base + way, 0.04f * b_}}, "Tail", habits_.tail / 2);
+    points.back().name = joint_if(habits_.ends, "TailEnd");
+    add_chain(body_, hips_, Rows::Single, points, 0.7f, {{}, 0, 0, Vec3f::UnitY(), 0.35f});
+  }
+
+  void add_spread_wings() {
+    WingShape wings = p_.wings;
+    wings.joints = p_.wing_joints;
+    wings.span *= s_;
+    wings.shoulder = along(0.85f) + Vec3f(0.045f * b_, 0.02f * b_, 0.0f);
+    add_wings(body_, chest_, wings, habits_);
+  }
+
+  void add_folded_wing() {
+    const Vec3f shoulder = along(0.9f) + Vec3f(0.06f * b_, 0.015f * b_, 0), tip = along(-0.35f) + Vec3f(0.068f * b_, 0.01f * b_, 0);
+    const Vec3f middle = 0.5f * (shoulder + tip) + Vec3f(0.012f * b_, 0, 0);
     add_chain(body_, chest_, Rows::Paired,
-              {{"Arm", out(0, 0), 0.05f * s_},
-               {"ForeArm", out(0.9f, -0.012f), 0.055f * s_},
-               {"Hand", out(1.9f, -0.004f), 0.052f * s_},
-               {"Fingers", out(2.75f, -0.02f), 0.042f * s_},
-               {"", out(3.4f, -0.045f), 0.022f * s_}},
-              0.7f, flat);
+              jointed({{"", shoulder, 0.03f * b_}, {"", middle, 0.042f * b_}, {"", tip, 0.018f * b_}}, "Wing", p_.wing_joints), 0.4f,
+              {{}, 0, 0, Vec3f::UnitX(), 0.4f});
   }
 
   void add_leg() {
-    const float x = 0.034f * b_, knee = 0.02f * s_ + 0.62f * (height() - 0.05f * s_);
-    const Vec3f thigh(x, height() - 0.03f * s_, -0.025f * s_), shin(x, knee, -0.005f * s_), ankle(x, 0.02f * s_, -0.02f * s_);
-    const auto leg =
-        add_chain(body_, hips_, Rows::Paired, {{"UpLeg", thigh, 0.032f * b_}, {"Leg", shin, 0.015f * b_}, {"", ankle, 0.01f * b_}}, 0.8f);
-    const JointId foot = body_.pair("Foot", leg.back(), ankle);
-    body_.clothe(foot, {{ankle, ankle + Vec3f(0, -0.008f, -0.03f) * s_}, 0.011f * s_, 0.007f * s_}, 0.008f * s_);
-    const char* names[] = {"ToeIn", "ToeMiddle", "ToeOut"};
-    for (int t = 0; t < 3; ++t) {
-      const Vec3f way = Vec3f(0.55f * static_cast<float>(t - 1), -0.12f, 1.0f).normalized();
+    const float x = 0.036f * b_, hip = along(0.2f).y() - 0.02f * b_, z = along(0.2f).z(), r = 0.012f * std::sqrt(p_.build) * s_;
+    const Vec3f ankle(x, 0.02f * s_, z - 0.005f * s_);
+    const auto leg = add_chain(body_, hips_, Rows::Paired,
+                               {{"UpLeg", {x, hip, z}, 0.034f * b_},
+                                {joint_if(habits_.ankles, "Leg"), {x, 0.02f * s_ + 0.55f * (hip - 0.02f * s_), z + 0.012f * s_}, 1.3f * r},
+                                {joint_if(habits_.toes, "Foot"), ankle, r}},
+                               0.8f);
+    const JointId foot = leg.back();
+    body_.clothe(foot, {{ankle, ankle + Vec3f(0, -0.008f, -0.03f) * p_.feet * s_}, 1.1f * r, 0.8f * r}, 0.008f * s_);
+    for (const int toe : {-1, 0, 1}) {
+      const Vec3f way = Vec3f(0.55f * static_cast<float>(toe), -0.12f, 1.0f).normalized();
+      const std::string name = toe < 0 ? "ToeIn" : toe > 0 ? "ToeOut" : "Toe";
       add_chain(body_, foot, Rows::Paired,
-                {{names[t], ankle + 0.008f * s_ * way, 0.0105f * s_}, {"", ankle + 0.06f * s_ * way, 0.0075f * s_}}, 0.5f);
+                {{joint_if(habits_.toes && (toe == 0 || habits_.phalanges > 2), name), ankle + 0.008f * s_ * way, 1.1f * r},
+                 {"", ankle + 0.055f * p_.feet * s_ * way, 0.85f * r}},
+                0.5f);
     }
   }
 
   const Proportions& p_;
+  const Habits& habits_;
   float s_, b_;  // metres per metre of the crow: lengths, thicknesses
   Body body_;
   JointId hips_{}, chest_{};
@@ -107,7 +141,8 @@ class BirdMaker {
 
 Body make_bird(Random& random) {
   const Proportions proportions(random);
-  return BirdMaker(proportions).make();
+  const Habits habits(random);
+  return BirdMaker(proportions, habits).make();
 }
 
 }  // namespace osteon::synth

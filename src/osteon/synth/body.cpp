@@ -38,6 +38,14 @@ float round_distance(const Vec3f& p, const Vec3f& a, const Vec3f& b, float ra, f
   return across * lean + along * slope - ra;
 }
 
+TriangleMesh mirrored_mesh(TriangleMesh mesh) {
+  for (Vec3f& p : mesh.positions) p = mirror(p);
+  for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
+  return mesh;
+}
+
+bool off_middle(const RoundCone& cone) { return cone.axis.a.x() != 0.0f || cone.axis.b.x() != 0.0f; }
+
 // Whether `below` hangs on `above` within a few joints, or is it.
 bool descends(const Skeleton& skeleton, JointId below, JointId above) {
   std::optional<JointId> at = below;
@@ -79,11 +87,20 @@ void Body::clothe(JointId joint, const RoundCone& cone, float blend) {
   widths_[joint] = widths_[twins_[joint]] = std::max(widths_[joint], width);
 }
 
+void Body::attach(JointId joint, const TriangleMesh& mesh, Copies copies) { add_piece({joint, Bond::Rigid, mesh}, copies); }
+
+void Body::drape(JointId joint, const TriangleMesh& mesh, Copies copies) { add_piece({joint, Bond::Soft, mesh}, copies); }
+
+void Body::add_piece(const Piece& piece, Copies copies) {
+  pieces_.push_back(piece);
+  if (copies == Copies::Both) pieces_.push_back({twins_[piece.joint], piece.bond, mirrored_mesh(piece.mesh)});
+}
+
 std::vector<Body::SidedPart> Body::all_parts() const {
   std::vector<SidedPart> all;
   for (const Part& part : parts_) {
     all.push_back({&part, false});
-    if (twins_[part.joint] != part.joint) all.push_back({&part, true});
+    if (off_middle(part.cone)) all.push_back({&part, true});
   }
   return all;
 }
@@ -131,15 +148,20 @@ PerJoint<float> Body::joint_distances(const Vec3f& p) const {
   for (const Part& part : parts_) {
     float& left = distances[part.joint];
     left = std::min(left, signed_distance(part.cone, p));
-    if (twins_[part.joint] == part.joint) continue;
+    if (!off_middle(part.cone)) continue;
     float& right = distances[twins_[part.joint]];
     right = std::min(right, signed_distance(part.cone, mirror(p)));
   }
   return distances;
 }
 
-std::vector<Influence> Body::weights(const Vec3f& p) const {
-  const PerJoint<float> distances = joint_distances(p);
+std::vector<Influence> Body::weights(const Vec3f& p, JointId top) const {
+  PerJoint<float> distances = joint_distances(p);
+  PerJoint<char> below(skeleton_.size(), 0);
+  for (JointId j : skeleton_.names.ids()) {
+    below[j] = j == top || (skeleton_.parents[j] && below[*skeleton_.parents[j]]);
+    if (!below[j]) distances[j] = std::numeric_limits<float>::infinity();
+  }
   const auto nearest = static_cast<JointId>(std::min_element(distances.begin(), distances.end()) - distances.begin());
   std::vector<Influence> row;
   for (JointId j : skeleton_.names.ids()) {

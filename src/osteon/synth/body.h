@@ -24,10 +24,17 @@ struct RoundCone {
 // The 2D construction of Quilez, "Distance functions", iquilezles.org, section "Round Cone".
 float signed_distance(const RoundCone& cone, const Vec3f& p);
 
-enum class Side { Centre, Left, Right };
+// A thing of its own beside the skin, a separate component of the mesh.
+enum class Bond { Rigid, Soft };  // all of it follows its joint; or it is weighted like the skin of the limb from its joint on
+struct Piece {
+  JointId joint;
+  Bond bond;
+  TriangleMesh mesh;
+};
+enum class Copies { Both, One };  // on both sides, or as it is
 
 // A character as a skeleton clothed with round cones that melt into one another, mirror-symmetric about x = 0: what stands on the left side
-// (x > 0) is given once and stands on the right too. World space, metres, y up, facing +z.
+// (x > 0) is given once and stands on the right too; pieces of one copy may break the symmetry. World space, metres, y up, facing +z.
 class Body {
  public:
   // A joint on the middle plane. The first joint is the root and has no parent.
@@ -35,10 +42,18 @@ class Body {
   // A joint on the left and its twin on the right, named "Left" + name and "Right" + name; returns the left one.
   // `parent` is a joint of the middle or the left.
   JointId pair(const std::string& name, JointId parent, const Vec3f& position);
-  // Clothes a joint (middle or left). `blend` is the width, in metres, over which the cone melts into those added before it.
+  // Clothes a joint (middle or left). A cone beside the middle plane stands on both sides even if the joint is of the middle. `blend` is
+  // the width, in metres, over which the cone melts into those added before it.
   void clothe(JointId joint, const RoundCone& cone, float blend);
 
+  // Adds a rigid piece, with Both also its mirror image on the joint's twin.
+  void attach(JointId joint, const TriangleMesh& mesh, Copies copies = Copies::Both);
+  // Adds a soft piece, such as the web of a wing, with Both also its mirror image. Pre: the limb from `joint` on is clothed.
+  void drape(JointId joint, const TriangleMesh& mesh, Copies copies = Copies::Both);
+
   const Skeleton& skeleton() const { return skeleton_; }
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  bool has_skin() const { return !parts_.empty(); }
   JointId mirrored(JointId joint) const { return twins_[joint]; }
   const Vec3f& at(JointId joint) const { return skeleton_.rest_positions[joint]; }
 
@@ -50,10 +65,12 @@ class Body {
 
   // Exact smooth weights of a point on the surface: the joint whose cone is nearest, shared with those up and down the same limb whose
   // cones are about as near. A joint's share falls off as (1 - (d - nearest) / width)^2: half and half at the joint between two bones,
-  // nothing beyond about one radius from it. Separate limbs never share: nothing leaks between legs or fingers.
-  std::vector<Influence> weights(const Vec3f& p) const;
+  // nothing beyond about one radius from it. Separate limbs never share: nothing leaks between legs or fingers. Only the joints from
+  // `top` on take part. Pre: one of them is clothed.
+  std::vector<Influence> weights(const Vec3f& p, JointId top = JointId{0}) const;
 
  private:
+  void add_piece(const Piece& piece, Copies copies);
   struct Part {
     JointId joint;
     RoundCone cone;
@@ -70,7 +87,8 @@ class Body {
   Skeleton skeleton_;
   PerJoint<JointId> twins_;
   std::vector<Part> parts_;  // of the middle and the left
-  PerJoint<float> widths_;   // over which a joint's weight falls off, metres
+  std::vector<Piece> pieces_;
+  PerJoint<float> widths_;  // over which a joint's weight falls off, metres
 };
 
 }  // namespace osteon::synth

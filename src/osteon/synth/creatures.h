@@ -11,18 +11,16 @@ Body make_biped(Random& random);
 Body make_quadruped(Random& random);
 Body make_bird(Random& random);
 Body make_fish(Random& random);
+Body make_serpent(Random& random);
+Body make_insect(Random& random);
+Body make_spider(Random& random);
 Body make_many_legged(Random& random);
-
-// Joints and round cones along a chain: from each point to the next, the last joint standing on the point before the last.
-struct ChainPoint {
-  std::string name;  // of the joint at this point; not used for the last point, which only ends the last cone
-  Vec3f position;
-  float radius;
-};
-enum class Rows { Single, Paired };  // joints of the middle plane, or a left chain and its twin on the right
-// Adds the chain below `parent` and clothes it; returns its joints (the left ones of a pair). `blend` is in units of the smaller radius.
-// `flat` gives the cones' section; its axis is ignored.
-std::vector<JointId> add_chain(Body& body, std::optional<JointId> parent, Rows rows, const std::vector<ChainPoint>& points,
-                               float blend = 0.6f, const RoundCone& flat = {});
+Body make_many_armed(Random& random);
+Body make_winged(Random& random);
+Body make_tailed_biped(Random& random);
+Body make_robot(Random& random);
+Body make_blob(Random& random);
+Body make_blocky_animal(Random& random);
+Body make_blocky_humanoid(Random& random);
 
 }  // namespace osteon::synth

@@ -1,123 +1,148 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "osteon/synth/quadruped.h"
+
+#include <algorithm>
 #include <cmath>
 
+#include "osteon/synth/chain.h"
 #include "osteon/synth/creatures.h"
 
 namespace osteon::synth {
 namespace {
 
-// In metres; lengths of a middling dog where a factor is 1.
-struct Proportions {
-  float size, length, height, build, neck, snout, ear, tail;  // factors; neck: 0 hangs low, 1 stands up
-  int tail_joints;
-
-  explicit Proportions(Random& random) {
-    size = random.uniform(0.6f, 2.2f);
-    length = random.uniform(0.85f, 1.25f);
-    height = random.uniform(0.75f, 1.2f);
-    build = random.uniform(0.85f, 1.35f);
-    neck = random.uniform(0.2f, 1.0f);
-    snout = random.uniform(0.6f, 1.4f);
-    ear = random.uniform(0.6f, 1.8f);
-    tail = random.uniform(0.5f, 1.6f);
-    tail_joints = 2 + static_cast<int>(random.below(4));
-  }
-};
-
 class QuadrupedMaker {
  public:
-  explicit QuadrupedMaker(const Proportions& proportions)
-      : p_(proportions), s_(proportions.size), b_(proportions.size * proportions.build) {}
+  QuadrupedMaker(const QuadrupedShape& shape, const Habits& habits)
+      : p_(shape), habits_(habits), s_(shape.size), b_(shape.size * shape.build), l_(shape.size * shape.build * shape.legs) {}
 
   Body make() {
     add_trunk();
-    add_head();
-    add_tail();
+    add_neck_and_head();
+    if (p_.tail > 0.0f) add_tail();
     add_hind_leg();
     add_front_leg();
+    if (p_.wings) add_spread_wings();
     return std::move(body_);
   }
 
  private:
-  float back_height() const { return 0.48f * p_.height * s_; }
+  // The belly stays off the ground however fat the animal.
+  float back_height() const { return std::max(0.48f * p_.height * s_, 0.1f * b_ * p_.belly + 0.13f * s_); }
   float along(float z) const { return z * p_.length * s_; }
 
   void add_trunk() {
-    const float y = back_height();
-    const auto spine = add_chain(body_, std::nullopt, Rows::Single,
-                                 {{"Hips", {0, y, along(-0.26f)}, 0.092f * b_},
-                                  {"Spine", {0, y + 0.005f * s_, along(-0.09f)}, 0.09f * b_},
-                                  {"Spine1", {0, y, along(0.08f)}, 0.108f * b_},
-                                  {"Chest", {0, y - 0.01f * s_, along(0.22f)}, 0.11f * b_},
-                                  {"", {0, y + 0.005f * s_, along(0.28f)}, 0.095f * b_}},
-                                 0.7f, {{}, 0, 0, Vec3f::UnitX(), 0.82f});
+    const float y = back_height(), belly = p_.belly;
+    const std::vector<ChainPoint> shape{{"", {0, y, along(-0.3f)}, 0.088f * b_},
+                                        {"", {0, y, along(-0.2f)}, 0.098f * b_},
+                                        {"", {0, y - 0.01f * b_ * belly, along(-0.05f)}, 0.092f * belly * b_},
+                                        {"", {0, y - 0.01f * b_ * belly, along(0.08f)}, 0.1f * belly * b_},
+                                        {"", {0, y, along(0.2f)}, 0.112f * b_},
+                                        {"", {0, y + 0.005f * s_, along(0.28f)}, 0.095f * b_}};
+    auto points = jointed(shape, "Spine", habits_.spine + 1);
+    points.front().name = "Hips";
+    const auto spine = add_chain(body_, std::nullopt, Rows::Single, points, 0.7f, {{}, 0, 0, Vec3f::UnitX(), 0.82f});
     hips_ = spine.front();
     chest_ = spine.back();
   }
 
-  void add_head() {
-    const Vec3f base = body_.at(chest_) + Vec3f(0, 0.035f * s_, along(0.07f));
-    const Vec3f way = Vec3f(0, 0.25f + 0.75f * p_.neck, 0.85f - 0.45f * p_.neck).normalized();
-    const Vec3f middle = base + 0.1f * s_ * way, top = base + 0.19f * s_ * way, nose = top + Vec3f(0, -0.035f, 0.145f * p_.snout) * s_;
-    const auto neck =
-        add_chain(body_, chest_, Rows::Single, {{"Neck", base, 0.078f * b_}, {"Neck1", middle, 0.064f * b_}, {"", top, 0.058f * b_}}, 0.8f);
-    const JointId head = body_.joint("Head", neck.back(), top);
-    body_.clothe(head, {{top + Vec3f(0, 0.012f, 0.01f) * s_, top + Vec3f(0, 0.008f, 0.04f) * s_}, 0.07f * s_, 0.064f * s_}, 0.05f * s_);
-    body_.clothe(head, {{top + Vec3f(0, -0.005f, 0.05f) * s_, nose}, 0.048f * s_, 0.03f * s_}, 0.04f * s_);
-    const Vec3f jaw_at = top + Vec3f(0, -0.035f, 0.035f) * s_;
-    add_chain(body_, head, Rows::Single, {{"Jaw", jaw_at, 0.034f * s_}, {"", nose + Vec3f(0, -0.032f, -0.025f) * s_, 0.019f * s_}}, 0.8f);
-    const Vec3f ear = top + Vec3f(0.042f, 0.062f, 0.0f) * s_, up = Vec3f(0.018f, 0.06f, -0.008f) * p_.ear * s_;
-    add_chain(body_, head, Rows::Paired,
-              {{"Ear", ear, 0.024f * s_}, {"Ear1", ear + 0.6f * up, 0.022f * s_}, {"", ear + 1.1f * up, 0.011f * s_}}, 0.8f,
-              {{}, 0, 0, Vec3f::UnitZ(), 0.55f});
+  void add_neck_and_head() {
+    const Vec3f base(0, back_height() + 0.025f * s_, along(0.28f));
+    const Vec3f way = Vec3f(0, 0.2f + 0.8f * p_.neck_rise, 0.85f - 0.55f * p_.neck_rise).normalized();
+    const Vec3f top = base + 0.19f * p_.neck * s_ * way;
+    const float thin = 0.072f * b_ / std::sqrt(std::max(p_.neck, 0.6f)), thick = 0.08f * b_;
+    const auto neck = add_chain(
+        body_, chest_, Rows::Single,
+        jointed({{"", base, thick}, {"", 0.5f * (base + top), 0.5f * (thick + thin)}, {"", top, thin}}, "Neck", habits_.neck), 0.7f);
+    add_head(body_, neck.empty() ? chest_ : neck.back(), top, p_.head, habits_);
   }
 
   void add_tail() {
-    std::vector<ChainPoint> points;
-    const float length = 0.34f * p_.tail * s_;
-    const Vec3f base = body_.at(hips_) + Vec3f(0, 0.045f * s_, along(-0.075f));
-    for (int i = 0; i <= p_.tail_joints; ++i) {
-      const float t = static_cast<float>(i) / static_cast<float>(p_.tail_joints);
-      points.push_back({i == 0 ? "Tail" : "Tail" + std::to_string(i), base + length * Vec3f(0, 0.2f * t - 0.75f * t * t, -0.85f * t),
-                        (0.034f - 0.02f * t) * b_});
+    std::vector<ChainPoint> shape;
+    const float length = 0.34f * p_.tail * s_, thick = 0.034f * p_.tail_thickness * b_;
+    const Vec3f base(0, back_height() + 0.035f * b_, along(-0.3f) - 0.055f * b_);
+    for (int i = 0; i <= 6; ++i) {
+      const float t = static_cast<float>(i) / 6.0f;
+      shape.push_back(
+          {"", base + length * Vec3f(0, 0.2f * t + (0.7f * p_.tail_rise - 0.1f) * t * t, -0.9f * t), thick * (1.0f - 0.6f * t)});
+      shape.back().position.y() = std::max(shape.back().position.y(), 0.04f * s_);
     }
-    add_chain(body_, hips_, Rows::Single, points, 0.8f);
+    auto points = jointed(shape, "Tail", habits_.tail);
+    points.back().name = joint_if(habits_.ends, "TailEnd");
+    add_chain(body_, hips_, Rows::Single, points, 0.7f);
   }
 
   void add_hind_leg() {
-    const float y = back_height(), x = 0.07f * b_, z = along(-0.27f);
-    add_chain(body_, hips_, Rows::Paired,
-              {{"UpLeg", {x, y - 0.03f * s_, z}, 0.078f * b_},
-               {"Leg", {x + 0.012f * b_, 0.56f * y, z + 0.055f * s_}, 0.045f * b_},
-               {"Foot", {x + 0.012f * b_, 0.28f * y, z - 0.075f * s_}, 0.028f * b_},
-               {"Toes", {x + 0.012f * b_, 0.03f * s_, z - 0.035f * s_}, 0.03f * b_},
-               {"", {x + 0.012f * b_, 0.026f * s_, z + 0.025f * s_}, 0.027f * b_}},
-              0.8f);
+    const float y = back_height(), x = 0.066f * b_, z = along(-0.27f), out = x + 0.012f * b_;
+    add_chain(
+        body_, hips_, Rows::Paired,
+        {{"UpLeg", {x, y - 0.03f * b_, z}, 0.074f * std::max(b_, l_)},
+         {joint_if(habits_.knees, "Leg"), {out, 0.56f * y, z + 0.055f * p_.bend * s_}, 0.045f * l_},
+         {joint_if(habits_.ankles, "Foot"), {out, 0.28f * y, z - 0.07f * p_.bend * s_}, 0.03f * l_},
+         {joint_if(habits_.toes, "Toes"), {out, 0.034f * s_, z - 0.035f * p_.bend * s_}, 0.031f * l_},
+         {joint_if(habits_.toes && habits_.ends, "ToesEnd"), {out, 0.028f * s_, z - 0.035f * p_.bend * s_ + 0.055f * s_}, 0.029f * l_}},
+        0.7f);
   }
 
   void add_front_leg() {
-    const float y = back_height(), x = 0.072f * b_, z = along(0.23f);
+    const float y = back_height(), x = 0.066f * b_, z = along(0.22f), out = x + 0.01f * b_;
     add_chain(body_, chest_, Rows::Paired,
-              {{"Shoulder", {x, y + 0.02f * s_, z - 0.02f * s_}, 0.06f * b_},
-               {"Arm", {x + 0.008f * b_, 0.78f * y, z + 0.045f * s_}, 0.056f * b_},
-               {"ForeArm", {x + 0.01f * b_, 0.56f * y, z - 0.02f * s_}, 0.04f * b_},
-               {"Hand", {x + 0.01f * b_, 0.2f * y, z + 0.0f * s_}, 0.028f * b_},
-               {"Fingers", {x + 0.01f * b_, 0.03f * s_, z + 0.015f * s_}, 0.03f * b_},
-               {"", {x + 0.01f * b_, 0.026f * s_, z + 0.065f * s_}, 0.026f * b_}},
-              0.8f);
+              {{joint_if(habits_.clavicles, "Shoulder"), {x, y + 0.02f * b_, z - 0.02f * s_}, 0.058f * b_},
+               {"Arm", {out, 0.78f * y, z + 0.04f * p_.bend * s_}, 0.054f * std::max(b_, l_)},
+               {joint_if(habits_.knees, "ForeArm"), {out, 0.52f * y, z - 0.025f * p_.bend * s_}, 0.042f * l_},
+               {joint_if(habits_.ankles, "Hand"), {out, 0.2f * y, z}, 0.03f * l_},
+               {joint_if(habits_.toes, "Fingers"), {out, 0.034f * s_, z + 0.01f * s_}, 0.031f * l_},
+               {joint_if(habits_.toes && habits_.ends, "FingersEnd"), {out, 0.028f * s_, z + 0.06f * s_}, 0.029f * l_}},
+              0.7f);
   }
 
-  const Proportions& p_;
-  float s_, b_;  // metres per metre of the middling dog: lengths, thicknesses
+  void add_spread_wings() {
+    WingShape wings = *p_.wings;
+    wings.span *= s_;
+    wings.shoulder = {0.06f * b_, back_height() + 0.07f * b_, along(0.16f)};
+    add_wings(body_, chest_, wings, habits_);
+  }
+
+  const QuadrupedShape& p_;
+  const Habits& habits_;
+  float s_, b_, l_;  // metres per metre of the middling dog: lengths, thicknesses, thicknesses of the legs
   Body body_;
   JointId hips_{}, chest_{};
 };
 
 }  // namespace
 
+QuadrupedShape::QuadrupedShape(Random& random) {
+  const float toy = std::max(random.uniform(-1.0f, 1.0f), 0.0f);  // 0: as in nature .. 1: a plush toy
+  size = random.uniform(0.5f, 2.5f);
+  length = random.uniform(0.8f, 1.35f) * (1.0f - 0.35f * toy);
+  height = random.uniform(0.6f, 1.35f) * (1.0f - 0.3f * toy);
+  build = random.uniform(0.7f, 1.5f);
+  belly = random.uniform(0.75f, 1.35f);
+  legs = random.uniform(0.8f, 1.3f);
+  neck = random.below(5) == 0 ? random.uniform(1.5f, 3.0f) : random.uniform(0.5f, 1.4f);
+  neck_rise = random.uniform(0.1f, 1.0f);
+  bend = random.below(4) == 0 ? 0.2f : random.uniform(0.6f, 1.2f);
+  tail = random.below(8) == 0 ? 0.0f : random.uniform(0.3f, 1.8f);
+  tail_thickness = random.below(4) == 0 ? random.uniform(1.2f, 2.2f) : random.uniform(0.5f, 1.0f);
+  tail_rise = random.uniform(-1.0f, 0.8f);
+  head.radius = size * random.uniform(0.06f, 0.085f) * (1.0f + 1.2f * toy);
+  head.width = random.uniform(0.75f, 1.0f);
+  head.forward = random.uniform(0.7f, 1.0f);
+  head.snout = random.uniform(0.3f, 1.5f) * (1.0f - 0.6f * toy);
+  head.snout_width = random.uniform(0.4f, 0.65f);
+  head.eyes = random.below(2) == 0 ? random.uniform(0.15f, 0.3f) : 0.0f;
+  head.ears = random.below(6) == 0 ? 0.0f : random.below(4) == 0 ? random.uniform(1.5f, 2.5f) : random.uniform(0.5f, 1.1f);
+  head.ear_spread = random.uniform();
+  head.horns = random.below(4) == 0 ? random.uniform(0.6f, 2.0f) : 0.0f;
+  head.horn_curl = random.uniform(-1.0f, 1.0f);
+  if (random.below(10) == 0) head.headgear = Outfit(random).headgear;
+}
+
+Body make_quadruped(const QuadrupedShape& shape, const Habits& habits) { return QuadrupedMaker(shape, habits).make(); }
+
 Body make_quadruped(Random& random) {
-  const Proportions proportions(random);
-  return QuadrupedMaker(proportions).make();
+  const QuadrupedShape shape(random);
+  return make_quadruped(shape, Habits(random));
 }
 
 }  // namespace osteon::synth

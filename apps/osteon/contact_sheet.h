@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "osteon/render/image.h"
+#include "osteon/rig/rig.h"
+
+namespace osteon::app {
+
+struct ContactSheetOptions {
+  int columns = 10;
+  int tile = 136;  // width and height of each picture, pixels
+};
+
+// All characters in one picture, in rows, each seen at an angle in the colours of its skin weights with its skeleton showing through.
+render::Image contact_sheet(const std::vector<Rig>& rigs, const ContactSheetOptions& options = {});
+
+}  // namespace osteon::app

@@ -27,6 +27,7 @@ namespace {
 struct EvaluateArguments {
   std::filesystem::path predicted, reference, data, models, json;
   std::string split = "val", task = "all";
+  pipelines::RignetOptions options;
 };
 
 const std::vector<metrics::ScoreColumn> kSkeletonColumns{{"iou", "IoU %", 100, 1},
@@ -125,12 +126,13 @@ Outcome attempt(Work&& work) {
 }
 
 // The system sees the bare mesh; for the skin it also gets the reference skeleton, as in RigNet's table 2.
-std::vector<double> score_skeleton(const Rig& original, const Reference& reference, const infer::RignetModels& models) {
-  return reference.skeleton_scores(pipelines::rig_character(original.mesh, models).skeleton);
+std::vector<double> score_skeleton(const Rig& original, const Reference& reference, const infer::RignetModels& models,
+                                   const pipelines::RignetOptions& options) {
+  return reference.skeleton_scores(pipelines::rig_character(original.mesh, models, options).skeleton);
 }
 
-std::vector<double> score_skin(const Rig& original, const Reference& reference, const infer::RignetModels& models) {
-  pipelines::RignetOptions options;
+std::vector<double> score_skin(const Rig& original, const Reference& reference, const infer::RignetModels& models,
+                               pipelines::RignetOptions options) {
   options.skeleton = original.skeleton;
   return reference.skin_scores(pipelines::rig_character(original.mesh, models, options).weights);
 }
@@ -138,13 +140,13 @@ std::vector<double> score_skin(const Rig& original, const Reference& reference, 
 using Outcomes = std::array<Outcome, 2>;  // skeleton, skin
 
 // One bad character does not stop the others.
-Outcomes evaluate_character(const dataset::ManifestEntry& entry, const std::string& task, const infer::RignetModels& models) {
+Outcomes evaluate_character(const dataset::ManifestEntry& entry, const EvaluateArguments& arguments, const infer::RignetModels& models) {
   try {
     const Rig rig = load_rig(entry.file);
     const Reference reference(rig);
     Outcomes out;
-    if (task != "skin") out[0] = attempt([&] { return score_skeleton(rig, reference, models); });
-    if (task != "skeleton") out[1] = attempt([&] { return score_skin(rig, reference, models); });
+    if (arguments.task != "skin") out[0] = attempt([&] { return score_skeleton(rig, reference, models, arguments.options); });
+    if (arguments.task != "skeleton") out[1] = attempt([&] { return score_skin(rig, reference, models, arguments.options); });
     return out;
   } catch (const Error& e) {
     return {Outcome{{}, e.what()}, Outcome{{}, e.what()}};
@@ -158,7 +160,7 @@ Tables evaluate_split(const EvaluateArguments& arguments) {
   ProgressLine progress("evaluating " + arguments.split, entries.size());
   parallel_for(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      outcomes[i] = evaluate_character(entries[i], arguments.task, models);
+      outcomes[i] = evaluate_character(entries[i], arguments, models);
       progress.advance();
     }
   });
@@ -205,6 +207,11 @@ void add_evaluate_command(CLI::App& app) {
       ->check(CLI::IsMember({"skeleton", "skin", "all"}))
       ->capture_default_str();
   command->add_option("--models", arguments->models, "Folder with the networks' weights");
+  pipelines::RignetOptions& options = arguments->options;
+  command->add_option("--bandwidth", options.bandwidth, "Of the mean shift: larger gives fewer joints");
+  command->add_option("--min-share", options.extraction.min_share, "Least share of the attention that makes a joint")
+      ->capture_default_str();
+  command->add_option("--prune", options.skin.prune_share, "Weights below this share of a vertex's largest go")->capture_default_str();
   command->add_option("--json", arguments->json, "Also write the table, with every character's values, to this file");
   command->callback([arguments] { evaluate(*arguments); });
 }

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "model_options.h"
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/manifest.h"
 #include "osteon/geometry/joint_rays.h"
@@ -25,7 +26,8 @@ namespace osteon::app {
 namespace {
 
 struct EvaluateArguments {
-  std::filesystem::path predicted, reference, data, models, json;
+  std::filesystem::path predicted, reference, data, json;
+  ModelOptions models;
   std::string split = "val", task = "all";
   pipelines::RignetOptions options;
 };
@@ -154,7 +156,7 @@ Outcomes evaluate_character(const dataset::ManifestEntry& entry, const EvaluateA
 }
 
 Tables evaluate_split(const EvaluateArguments& arguments) {
-  const auto models = arguments.models.empty() ? infer::RignetModels::load() : infer::RignetModels::load(arguments.models);
+  const auto models = arguments.models.load();
   const auto entries = dataset::read_manifest(arguments.data, arguments.split);
   std::vector<Outcomes> outcomes(entries.size());
   ProgressLine progress("evaluating " + arguments.split, entries.size());
@@ -206,7 +208,7 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--task", arguments->task, "What to measure")
       ->check(CLI::IsMember({"skeleton", "skin", "all"}))
       ->capture_default_str();
-  command->add_option("--models", arguments->models, "Folder with the networks' weights");
+  arguments->models.add_to(*command);
   pipelines::RignetOptions& options = arguments->options;
   command->add_option("--bandwidth", options.bandwidth, "Of the mean shift: larger gives fewer joints");
   command->add_option("--min-share", options.extraction.min_share, "Least share of the attention that makes a joint")

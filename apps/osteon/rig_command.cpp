@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "load_options.h"
+#include "model_options.h"
 #include "osteon/io/rigtxt.h"
 #include "osteon/io/save.h"
 #include "osteon/pipelines/rignet.h"
@@ -17,7 +18,8 @@ namespace {
 
 struct RigArguments {
   std::filesystem::path input, output;
-  std::optional<std::filesystem::path> preview, report, rigtxt, skeleton, models;
+  std::optional<std::filesystem::path> preview, report, rigtxt, skeleton;
+  ModelOptions models;
   float min_confidence = pipelines::kLowConfidence;
   io::LoadOptions load;
   io::SaveOptions save;
@@ -65,7 +67,7 @@ void rig(const RigArguments& arguments) {
   check_outputs(arguments);
   const io::Asset asset = io::load(arguments.input, arguments.load);
   warn(arguments.input, asset.repairs);
-  const auto models = arguments.models ? infer::RignetModels::load(*arguments.models) : infer::RignetModels::load();
+  const auto models = arguments.models.load();
   const auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(arguments));
   warn(arguments.input, result.report.repairs);
   warn(arguments.input, result.report.warnings);
@@ -121,7 +123,7 @@ void add_rig_command(CLI::App& app) {
       ->check(CLI::Range(0.0f, 1.0f))
       ->capture_default_str();
   add_load_options(*command, arguments->load);
-  command->add_option("--models", arguments->models, "Use the networks' weights of this folder")->type_name("FOLDER");
+  arguments->models.add_to(*command);
   command->callback([arguments] { rig(*arguments); });
 }
 

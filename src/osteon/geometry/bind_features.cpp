@@ -25,7 +25,7 @@ struct Relation {
 
 // Where a joint stands in its tree.
 struct Place {
-  int parent = -1, depth = 0, children = 0, descendants = 0;
+  int parent = -1, children = 0;
   float parent_length = 0.0f;  // of the bone that ends at it
 };
 
@@ -40,11 +40,6 @@ class BoneTree {
       end.parent_length = (bones.segments[b].b - bones.segments[b].a).norm();
       ++joints_[static_cast<std::size_t>(bones.starts[b])].children;
     }
-    for (Place& joint : joints_)
-      for (int above = joint.parent; above >= 0; above = joints_[static_cast<std::size_t>(above)].parent) {
-        ++joint.depth;
-        ++joints_[static_cast<std::size_t>(above)].descendants;
-      }
   }
   const Place& start_of(std::size_t bone) const { return joints_[static_cast<std::size_t>(bones_.starts[bone])]; }
   Relation of(std::size_t bone, std::size_t other) const {
@@ -107,9 +102,7 @@ BindInputs bind_inputs(std::span<const Vec3f> positions, std::span<const Vec3f> 
                                              static_cast<float>(k) / kBindBones,
                                              std::min(distance / (length + 0.02f), 5.0f),
                                              10.0f * least,
-                                             0.1f * static_cast<float>(start.depth),
                                              0.3f * static_cast<float>(start.children),
-                                             0.3f * std::log(1.0f + static_cast<float>(start.descendants)),
                                              5.0f * start.parent_length,
                                              start.parent < 0 ? 1.0f : 0.0f};
         std::ranges::copy(values, row);

@@ -12,7 +12,7 @@
 // which way it faces, so a limb teaches about all limbs.
 namespace osteon::geometry {
 
-constexpr int kBindFeatures = 23;
+constexpr int kBindFeatures = 21;
 constexpr int kBindBones = 8;  // bones that a vertex can choose from
 
 // A skeleton's bones, parallel arrays; joints are named by their index.

@@ -103,7 +103,7 @@ struct BindArrays {
     }
   }
 };
-constexpr int bind_features = 23;  // of a vertex and a bone
+constexpr int bind_features = 21;  // of a vertex and a bone
 
 // The inputs of all networks; what a network does not use may be empty.
 struct NetworkInputs {

@@ -78,9 +78,9 @@ void add_common_options(CLI::App& command, Arguments& a) {
   command.add_option("--validate-seconds", a.options.validate_seconds)->capture_default_str();
 }
 
-void add_collapse_options(CLI::App& command, Arguments& a) {
-  command.add_option("--bandwidth", a.bandwidth, "Bandwidth to start from")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")->capture_default_str();
+void add_votes_options(CLI::App& command, Arguments& a) {
+  a.options.task.attention_weight = 0.02;
+  command.add_option("--density-weight", a.options.task.density_weight, "Of the votes' density at the joints")->capture_default_str();
   command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
 }
 
@@ -89,7 +89,12 @@ void add_combined_options(CLI::App& command, Arguments& a) {
       command.add_flag("--combined", a.combined, "Train displacement, attention and bandwidth together, through the mean shift");
   command.add_option("--attention", a.attention, "Attention weights to start from")->check(CLI::ExistingFile)->needs(combined);
   command.add_option("--attention-out", a.attention_out, "Where the attention's weights go")->needs(combined);
-  add_collapse_options(command, a);
+  command.add_option("--bandwidth", a.bandwidth, "Bandwidth to start from")
+      ->check(CLI::PositiveNumber)
+      ->needs(combined)
+      ->capture_default_str();
+  command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")->capture_default_str();
+  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
 }
 
 std::vector<dataset::Example> examples_of(const std::vector<fs::path>& files, Task task) {
@@ -168,7 +173,7 @@ void add_command(CLI::App& app, Task task, const char* name, const char* descrip
   auto arguments = std::make_shared<Arguments>();
   add_common_options(*command, *arguments);
   if (task == Task::joints) add_combined_options(*command, *arguments);
-  if (task == Task::votes) add_collapse_options(*command, *arguments);
+  if (task == Task::votes) add_votes_options(*command, *arguments);
   command->callback([command, task, arguments] { run(*command, task, *arguments); });
 }
 

@@ -47,11 +47,23 @@ TEST(Chamfer, counts_both_ways_by_half) {
   EXPECT_NEAR(chamfer(points, joint).item<float>(), 0.25f, 1e-6f);
 }
 
+// Two joints of which each has half of the votes: a joint's density is half of 1 plus the kernel of the other's votes.
+TEST(DensityLoss, counts_the_share_of_the_attention_that_is_at_each_joint) {
+  const at::Tensor joints = torch::tensor({{0.0f, 0.0f, 0.0f}, {0.06f, 0.0f, 0.0f}}), equal = torch::tensor({{2.0f}, {2.0f}});
+  const double kernel = 1.0 / std::pow(1.0 + 4.0, 3.0);
+  EXPECT_NEAR(density_loss(joints, equal, joints, 0.03).item<double>(), -std::log(0.5 * (1.0 + kernel)), 1e-5);
+  const at::Tensor all_on_first = torch::tensor({{9.0f}, {-30.0f}});
+  EXPECT_NEAR(density_loss(joints, all_on_first, joints, 0.03).item<double>(), -0.5 * std::log(kernel), 1e-4);
+}
+
 TEST(Losses, have_the_gradients_of_central_differences) {
   const at::Tensor joints = random_points(5, 3, 1, 1.0f).to(at::kDouble), points = random_points(12, 3, 2, 1.0f);
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return chamfer(x, joints); }, points), 1e-7);
   const at::Tensor logits = random_points(20, 1, 3, 4.0f) - 2.0f, labels = (random_points(20, 1, 4, 1.0f).squeeze(1) > 0.6).to(at::kDouble);
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return attention_loss(x, labels); }, logits), 1e-7);
+  const at::Tensor attention = random_points(12, 1, 8, 4.0f) - 2.0f;
+  EXPECT_LT(gradient_error([&](const at::Tensor& x) { return density_loss(x, attention.to(at::kDouble), joints, 0.2); }, points), 1e-6);
+  EXPECT_LT(gradient_error([&](const at::Tensor& x) { return density_loss(points.to(at::kDouble), x, joints, 0.2); }, attention), 1e-6);
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return bone_loss(x, labels); }, logits), 1e-7);
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return root_loss(x, {0, 8, 20}, {3, 8}); }, logits), 1e-7);
   const at::Tensor weights = random_points(6, 5, 5, 1.0f).to(at::kDouble).softmax(1),

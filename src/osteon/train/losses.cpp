@@ -31,6 +31,13 @@ at::Tensor chamfer(const at::Tensor& points, const at::Tensor& joints) {
                 distances(points.index_select(0, nearest_point), joints).mean());
 }
 
+at::Tensor density_loss(const at::Tensor& points, const at::Tensor& logits, const at::Tensor& joints, double width) {
+  const at::Tensor squared = (joints.unsqueeze(1) - points.unsqueeze(0)).square().sum(2);  // (J,V)
+  const at::Tensor log_kernel = -3.0 * at::log1p(squared / (width * width));
+  const at::Tensor log_attention = at::log_sigmoid(logits.squeeze(1));
+  return at::logsumexp(log_attention, 0) - at::logsumexp(log_kernel + log_attention.unsqueeze(0), 1).mean();
+}
+
 at::Tensor trail_loss(const std::vector<at::Tensor>& trail, const at::Tensor& joints) {
   at::Tensor sum = at::zeros({}, joints.options());
   for (const at::Tensor& points : trail) sum = sum + chamfer(points, joints);

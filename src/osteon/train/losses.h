@@ -15,6 +15,13 @@ at::Tensor attention_loss(const at::Tensor& logits, const at::Tensor& targets);
 // points (N,3), joints (J,3). The paper's equation 10 has no factor 1/2.
 at::Tensor chamfer(const at::Tensor& points, const at::Tensor& joints);
 
+// Mean over the joints of -log of the votes' density there, where the votes are a mixture of kernels (1 + d^2 / width^2)^-3, each weighted
+// with its attention in parts of all attention: points (V,3), logits (V,1) of the attention, joints (J,3), width in the unit of the points.
+// Ours, in place of the paper's loss through the mean shift: the joints that are found are the modes of this very density. Votes away from
+// joints cost, as the whole is 1; every joint gets about the same share, however much skin there is around it, so that a threshold on the
+// share tells joints from noise; and attention learns which votes are good.
+at::Tensor density_loss(const at::Tensor& points, const at::Tensor& logits, const at::Tensor& joints, double width);
+
 // The trail of a mean shift against the joints: mean of chamfer() over its steps (the released code; the paper takes the last one).
 at::Tensor trail_loss(const std::vector<at::Tensor>& trail, const at::Tensor& joints);
 

@@ -87,12 +87,28 @@ Tensor displacement_loss(const Candidates& all, const dataset::Batch& batch) {
   return sum / static_cast<double>(meshes);
 }
 
-Tensor collapse_loss(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
-  const Candidates all = candidates(task, model, batch, options.run);
+Tensor density_loss_of(const Candidates& all, const dataset::Batch& batch, const TaskOptions& options) {
+  const std::size_t meshes = batch.targets.root.size();
+  const nets::BatchArrays &vertices = batch.inputs.mesh.batch, &joints = batch.inputs.joints.batch;
+  Tensor sum = at::zeros({}, all.points.options());
+  for (std::size_t m = 0; m < meshes; ++m)
+    sum = sum + density_loss(rows_of_mesh(all.points, vertices, m), rows_of_mesh(all.attention, vertices, m),
+                             rows_of_mesh(all.joints, joints, m), options.density_width);
+  return sum / static_cast<double>(meshes);
+}
+
+Tensor votes_loss(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(Task::votes, model, batch, options.run);
+  return displacement_loss(all, batch) + options.density_weight * density_loss_of(all, batch, options) +
+         options.attention_weight * attention_loss(all.attention, tensor_of(batch.targets.attention, 1, options.run.device));
+}
+
+Tensor collapse_loss(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(Task::collapse, model, batch, options.run);
   const Tensor attention = all.attention.sigmoid();
   const std::size_t meshes = batch.targets.root.size();
   Tensor loss = displacement_loss(all, batch);
-  for (std::size_t m = 0; m < meshes && options.collapse_weight > 0.0; ++m) {
+  for (std::size_t m = 0; m < meshes; ++m) {
     const auto trail = mean_shift(rows_of_mesh(all.points, batch.inputs.mesh.batch, m), rows_of_mesh(attention, batch.inputs.mesh.batch, m),
                                   model["bandwidth"].at("h"), options.mean_shift_steps);
     const Tensor collapsed = trail_loss(trail, rows_of_mesh(all.joints, batch.inputs.joints.batch, m));
@@ -136,14 +152,20 @@ Figures distance_figures(const Tensor& points, const Tensor& joints) {
   return {{"loss", 0.5 * (to_joints + to_points)}, {"to_joints", to_joints}, {"to_points", to_points}};
 }
 
-Figures collapse_figures(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
-  const Candidates all = candidates(task, model, batch, options.run);
+Figures votes_figures(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(Task::votes, model, batch, options.run);
+  Figures figures = distance_figures(all.points, all.joints);
+  figures["loss"] = density_loss_of(all, batch, options).item<double>();
+  figures["f1"] = attention_figures(all.attention, tensor_of(batch.targets.attention, 1, options.run.device)).at("f1");
+  return figures;
+}
+
+Figures collapse_figures(Model& model, const dataset::Batch& batch, const TaskOptions& options) {
+  const Candidates all = candidates(Task::collapse, model, batch, options.run);
   const Tensor attention = all.attention.sigmoid();
   const Tensor points = mean_shift(all.points, attention, model["bandwidth"].at("h"), options.mean_shift_steps).back();
   const Tensor sure = (attention.squeeze(1) > 0.1 * attention.max()).nonzero().squeeze(1);
-  Figures figures = distance_figures(points.index_select(0, sure), all.joints);
-  figures["f1"] = attention_figures(all.attention, tensor_of(batch.targets.attention, 1, options.run.device)).at("f1");
-  return figures;
+  return distance_figures(points.index_select(0, sure), all.joints);
 }
 
 // The batch holds all pairs in one order and then in the other: the mean of both probabilities decides.
@@ -171,7 +193,8 @@ Figures skin_figures(const Tensor& logits, const Tensor& weights, const Tensor& 
 
 Figures figures_of(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
   const at::Device device = options.run.device;
-  if (task == Task::collapse || task == Task::votes) return collapse_figures(task, model, batch, options);
+  if (task == Task::collapse) return collapse_figures(model, batch, options);
+  if (task == Task::votes) return votes_figures(model, batch, options);
   if (task == Task::joints) {
     const Candidates all = candidates(task, model, batch, options.run);
     return distance_figures(all.points, all.joints);
@@ -202,8 +225,10 @@ Model fresh_model(Task task, std::uint64_t seed) {
     quieten_global_features(network, model[name_of(network)]);
   };
   add(network_of(task));
-  if (task == Task::collapse) add(Network::attention);
-  if (task == Task::collapse || task == Task::votes) model["bandwidth"]["h"] = at::full({1}, 0.04, at::kFloat);
+  if (task == Task::collapse) {
+    add(Network::attention);
+    model["bandwidth"]["h"] = at::full({1}, 0.04, at::kFloat);
+  }
   if (network_of(task) == Network::joints || network_of(task) == Network::votes)
     for (const char* name : {"out.weight", "out.bias"}) model[name_of(network_of(task))].at(name).zero_();
   return model;
@@ -211,7 +236,8 @@ Model fresh_model(Task task, std::uint64_t seed) {
 
 at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
   const at::Device device = options.run.device;
-  if (task == Task::collapse || task == Task::votes) return collapse_loss(task, model, batch, options);
+  if (task == Task::collapse) return collapse_loss(model, batch, options);
+  if (task == Task::votes) return votes_loss(model, batch, options);
   if (task == Task::joints) return displacement_loss(candidates(task, model, batch, options.run), batch);
   const Tensor out = run(network_of(task), model, batch, options.run);
   if (task == Task::attention) return attention_loss(out, tensor_of(batch.targets.attention, 1, device));

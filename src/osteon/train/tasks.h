@@ -16,7 +16,7 @@ enum class Task {
   attention,  // rignet.attention
   joints,     // rignet.joints: displacement alone, by chamfer(vertex + displacement, joints)
   collapse,   // rignet.joints --combined: displacement, attention and bandwidth together, through the mean shift
-  votes,      // rignet.votes: the same losses for the one network that gives both
+  votes,      // rignet.votes: displacement and attention of one network, by the density of its votes
   bones,
   root,
   skin,
@@ -29,6 +29,8 @@ struct TaskOptions {
   int mean_shift_steps = 15;
   double collapse_weight = 2.0;   // of the trail against chamfer(q, joints): the released code's
   double attention_weight = 0.1;  // of the attention's own cross-entropy in the combined loss: the code's option
+  double density_weight = 0.05;   // votes: of the density at the joints, against chamfer(q, joints)
+  double density_width = 0.03;    // of its kernel; longest side = 1
 };
 
 // What the task reads of a character.
@@ -42,7 +44,7 @@ at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, c
 // Named figures, each a mean over the characters; "loss" is what to choose by (smaller is better).
 //   attention   loss, f1 (of label 1 at probability 0.5)
 //   joints      loss, to_joints (mean over vertices of the distance to the nearest joint), to_points
-//   votes       the same of the shifted points, and f1 of the attention
+//   votes       loss (of the density), to_joints and to_points of all votes, f1 of the attention
 //   collapse    the same of the shifted points that have attention above 0.1 of the mesh's largest
 //   bones       loss, accuracy, precision and recall of the pairs with probability over 0.5 (mean of both orders)
 //   root        loss, accuracy

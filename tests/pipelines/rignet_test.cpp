@@ -5,43 +5,19 @@
 #include <numeric>
 
 #include "osteon/base/parallel.h"
-#include "osteon/base/random.h"
-#include "osteon/base/safetensors.h"
 #include "osteon/mesh/shapes.h"
-#include "osteon/nets/dry_run.h"
 #include "osteon/rig/rig.h"
-#include "support/expect.h"
+#include "untrained.h"
 
 namespace osteon::pipelines {
 namespace {
 
-using nets::rignet::Network;
+using test::Network;
 using testing::HasSubstr;
-
-// A file with seeded random parameters of a network: uniform as a linear layer starts, normalisation near the identity.
-void write_random(const std::filesystem::path& path, Network network, std::uint64_t seed) {
-  Random random(seed);
-  Safetensors content;
-  for (const auto& [name, shape] : nets::rignet::parameter_shapes(network)) {
-    const auto count = std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies());
-    const float bound = shape.size() == 2 ? 1.5f / std::sqrt(static_cast<float>(shape[1])) : 0.1f;
-    std::vector<float> values(static_cast<std::size_t>(count));
-    const bool is_variance = name.ends_with("running_var");
-    for (float& v : values) v = is_variance ? random.uniform(0.5f, 1.5f) : random.uniform(-bound, bound);
-    content.arrays[name] = Array::of<float>(values, shape);
-  }
-  save_safetensors(path, content);
-}
 
 // Networks that were never trained: whatever they say, the rig has to be valid.
 const infer::RignetModels& untrained() {
-  static const infer::RignetModels models = [] {
-    const test::TemporaryFolder folder;
-    std::uint64_t seed = 1;
-    for (const Network network : {Network::attention, Network::joints, Network::bones, Network::root, Network::skin})
-      write_random(folder / (std::string(nets::rignet::name_of(network)) + ".safetensors"), network, seed++);
-    return infer::RignetModels::load(folder.path());
-  }();
+  static const infer::RignetModels models = test::untrained_models({Network::votes, Network::bones, Network::root, Network::bind});
   return models;
 }
 

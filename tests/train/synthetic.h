@@ -10,6 +10,18 @@
 // Inputs of the networks without meshes: rings of vertices with neighbours beside them, and joints on a line.
 namespace osteon::train::test {
 
+// What the voting and the binding network read.
+inline void add_features(NetworkInputs& inputs, int vertices, Random random) {
+  for (int i = 0; i < vertices * nets::vote_features; ++i) inputs.vote_features.push_back(random.uniform(-1.0f, 1.0f));
+  std::vector<std::int32_t> choice_offsets{0};
+  for (int v = 0; v < vertices; ++v) choice_offsets.push_back(choice_offsets.back() + 1 + v % 4);
+  std::vector<float> features;
+  std::vector<std::int32_t> bones;
+  for (int i = 0; i < choice_offsets.back() * nets::bind_features; ++i) features.push_back(random.uniform(-1.0f, 1.0f));
+  for (int i = 0; i < choice_offsets.back(); ++i) bones.push_back(static_cast<std::int32_t>(random.below(7)));
+  inputs.choices.add(features, choice_offsets, bones);
+}
+
 // `vertices` points near a circle; neighbours at one and two steps (one-ring) and at three and five (geodesic).
 inline void add_ring_mesh(NetworkInputs& inputs, int vertices, Random& random) {
   std::vector<std::uint32_t> offsets{0}, ring, geodesic;
@@ -27,14 +39,7 @@ inline void add_ring_mesh(NetworkInputs& inputs, int vertices, Random& random) {
   inputs.mesh.geodesic.add(offsets, geodesic, first);
   inputs.mesh.batch.add(static_cast<std::size_t>(vertices));
   for (int i = 0; i < vertices * nets::rignet::skin_inputs; ++i) inputs.skin_features.push_back(random.uniform(-1.0f, 1.0f));
-  for (int i = 0; i < vertices * nets::vote_features; ++i) inputs.vote_features.push_back(random.uniform(-1.0f, 1.0f));
-  std::vector<std::int32_t> choice_offsets{0};
-  for (int v = 0; v < vertices; ++v) choice_offsets.push_back(choice_offsets.back() + 1 + v % 4);
-  std::vector<float> features;
-  std::vector<std::int32_t> bones;
-  for (int i = 0; i < choice_offsets.back() * nets::bind_features; ++i) features.push_back(random.uniform(-1.0f, 1.0f));
-  for (int i = 0; i < choice_offsets.back(); ++i) bones.push_back(static_cast<std::int32_t>(random.below(7)));
-  inputs.choices.add(features, choice_offsets, bones);
+  add_features(inputs, vertices, Random(static_cast<std::uint64_t>(vertices)));
 }
 
 inline void add_joints(NetworkInputs& inputs, int joints, Random& random) {

@@ -73,20 +73,9 @@ std::vector<Mode> modes_of(const std::vector<Vec3f>& shifted, const std::vector<
   return modes;
 }
 
-int joints_of(const Mode& mode) { return mode.is_pair ? 2 : 1; }
-
-// What a joint gathers: the mean share of the modes, weighted by their shares, so that many thin ones count little.
-float usual_share(const std::vector<Mode>& modes) {
-  float squares = 0.0f, sum = 0.0f;
-  for (const Mode& m : modes) {
-    squares += static_cast<float>(joints_of(m)) * m.share * m.share;
-    sum += static_cast<float>(joints_of(m)) * m.share;
-  }
-  return sum > 0.0f ? squares / sum : 0.0f;
-}
-
 // Modes come by falling share: drops the thin tail, but keeps two.
 void prune(std::vector<Mode>& modes, float min_share) {
+  const auto joints_of = [](const Mode& m) { return m.is_pair ? 2 : 1; };
   std::size_t kept = 0;
   int joints = 0;
   while (kept < modes.size() && (modes[kept].share >= min_share || joints < 2)) joints += joints_of(modes[kept++]);
@@ -170,7 +159,7 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   const float h = options.bandwidth;
   const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step}).points;
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
-  prune(modes, std::max(options.min_share * h / kDefaultBandwidth, options.relative_share * usual_share(modes)));
+  prune(modes, options.min_share * h / kDefaultBandwidth);
   for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
   out.explained = explained_share(out.joints, shifted, votes.weights, h);
   return out;

@@ -29,8 +29,6 @@ struct JointExtractionOptions {
   float min_attention = 1e-3f;   // candidates below are ignored
   float min_share = 3.5e-3f;     // a joint gathers at least this share of all attention within the default bandwidth; in proportion
                                  // less within a finer one and more within a coarser one
-  float relative_share = 0.0f;   // and at least this share of what joints usually gather: the mean of their shares, weighted by them.
-                                 // Votes give every joint about the same (train::density_loss), so noise stands out
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
                                  // other side's attention
 };

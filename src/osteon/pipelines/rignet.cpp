@@ -13,9 +13,9 @@
 #include "osteon/geometry/rignet_features.h"
 #include "osteon/geometry/symmetry.h"
 #include "osteon/geometry/volumetric_geodesic.h"
-#include "osteon/geometry/vote_features.h"
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/geometry/working_mesh.h"
+#include "osteon/pipelines/joint_votes.h"
 #include "osteon/skin/distance_weights.h"
 
 namespace osteon::pipelines {
@@ -77,16 +77,6 @@ Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stage
   return body;
 }
 
-JointCandidates candidates(const Body& body, const infer::RignetModels& models) {
-  const infer::JointVotes votes = models.votes(body.graph, geometry::vote_rows(geometry::vote_features(body.working.mesh)));
-  JointCandidates out;
-  for (Eigen::Index v = 0; v < votes.attention.rows(); ++v) {
-    out.positions.push_back(body.positions()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose());
-    out.attention.push_back(votes.attention(v, 0));
-  }
-  return out;
-}
-
 JointExtraction find_joints(const JointCandidates& seen, const Body& body, const RignetOptions& options) {
   if (options.joints) return extract_joint_count(seen, body.voxels, body.symmetry, *options.joints, options.extraction);
   JointExtractionOptions extraction = options.extraction;
@@ -133,7 +123,7 @@ void warn_about_joints(const JointExtraction& found, const RignetOptions& option
 
 Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RigReport& report,
                           Stages& stages) {
-  const JointCandidates seen = stages.run("joint networks", [&] { return candidates(body, models); });
+  const JointCandidates seen = stages.run("joint networks", [&] { return joint_votes(body.working.mesh, body.graph, models); });
   const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, body, options); });
   warn_about_joints(found, options, report.warnings);
   report.bandwidth = found.bandwidth;

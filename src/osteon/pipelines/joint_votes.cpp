@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/joint_votes.h"
+
+#include <array>
+
+#include "osteon/geometry/vote_features.h"
+#include "osteon/geometry/working_mesh.h"
+
+namespace osteon::pipelines {
+namespace {
+
+constexpr float kTurn = 0.15f;     // radians about the vertical, within what the networks were trained with
+constexpr float kStretch = 1.06f;  // of the height of the turned views, and its inverse
+
+std::array<Eigen::Matrix3f, 4> views() {
+  const auto turned = [](float angle, float height) {
+    return Eigen::Matrix3f(Eigen::AngleAxisf(angle, Vec3f::UnitY()).toRotationMatrix() * Vec3f(1.0f, height, 1.0f).asDiagonal());
+  };
+  const Eigen::Matrix3f mirror = Vec3f(-1.0f, 1.0f, 1.0f).asDiagonal();
+  return {Eigen::Matrix3f::Identity(), mirror, turned(kTurn, kStretch), mirror * turned(kTurn, 1.0f / kStretch)};
+}
+
+geometry::VoteFeatures seen(geometry::VoteFeatures features, const Eigen::Matrix3f& view, float scale) {
+  const Eigen::Matrix3f of_normals = view.inverse().transpose();
+  for (Vec3f& n : features.normals) n = (of_normals * n).normalized();
+  for (Vec3f& way : features.to_middle) way = scale * (view * way);
+  for (float& thickness : features.thicknesses) thickness *= scale;
+  return features;
+}
+
+}  // namespace
+
+JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const infer::RignetModels& models) {
+  const geometry::VoteFeatures features = geometry::vote_features(mesh);
+  JointCandidates out;
+  for (const Eigen::Matrix3f& view : views()) {
+    TriangleMesh shown = mesh;
+    for (Vec3f& p : shown.positions) p = view * p;
+    const geometry::Normalization frame = geometry::normalization_of(shown);
+    nets::MeshArrays arrays = graph;
+    arrays.positions.clear();
+    for (Vec3f& p : shown.positions) {
+      p = frame.apply(p);
+      arrays.positions.insert(arrays.positions.end(), p.begin(), p.end());
+    }
+    const infer::JointVotes votes = models.votes(arrays, geometry::vote_rows(seen(features, view, frame.scale)));
+    const Eigen::Matrix3f back = view.inverse();
+    for (Eigen::Index v = 0; v < votes.attention.rows(); ++v) {
+      const Vec3f q = shown.positions.raw()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose();
+      out.positions.push_back(back * frame.undo(q));
+      out.attention.push_back(votes.attention(v, 0));
+    }
+  }
+  return out;
+}
+
+}  // namespace osteon::pipelines

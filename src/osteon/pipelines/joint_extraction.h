@@ -12,7 +12,7 @@ namespace osteon::pipelines {
 
 // The level of detail of the paper: the bandwidth may be anything in this range; in the middle is the one that gives the best skeletons of
 // the validation characters.
-constexpr float kFinestBandwidth = 0.01f, kDefaultBandwidth = 0.035f, kCoarsestBandwidth = 0.1f;
+constexpr float kFinestBandwidth = 0.01f, kDefaultBandwidth = 0.03f, kCoarsestBandwidth = 0.1f;
 
 // Detail 0 is the coarsest bandwidth, 0.5 the default, 1 the finest, geometric in between. Pre: 0 <= detail <= 1.
 float bandwidth_of_detail(float detail);
@@ -27,7 +27,7 @@ struct JointExtractionOptions {
   float bandwidth = kDefaultBandwidth;
   float step = 0.3f;             // of the mean shift
   float min_attention = 1e-3f;   // candidates below are ignored
-  float min_share = 3.5e-3f;     // a joint gathers at least this share of all attention within the default bandwidth; in proportion
+  float min_share = 9e-3f;       // a joint gathers at least this share of all attention within the default bandwidth; in proportion
                                  // less within a finer one and more within a coarser one
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
                                  // other side's attention

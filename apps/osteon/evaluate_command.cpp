@@ -213,6 +213,8 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--bandwidth", options.bandwidth, "Of the mean shift: larger gives fewer joints");
   command->add_option("--min-share", options.extraction.min_share, "Least share of the attention that makes a joint")
       ->capture_default_str();
+  command->add_option("--spread-share", options.extraction.spread_share, "The same for joints whose votes are spread")
+      ->capture_default_str();
   command->add_option("--prune", options.skin.prune_share, "Weights below this share of a vertex's largest go")->capture_default_str();
   command->add_option("--json", arguments->json, "Also write the table, with every character's values, to this file");
   command->callback([arguments] { evaluate(*arguments); });

@@ -150,6 +150,36 @@ std::vector<float> density_shares(const std::vector<Vec3f>& shifted, const std::
   return density;
 }
 
+// The votes that no joint explains: a straight limb says only roughly where its knee is, so the votes for it are spread over more than one
+// bandwidth.
+Votes unexplained(const Votes& votes, const std::vector<Vec3f>& shifted, const JointSet& joints, float reach) {
+  Votes rest;
+  rest.inside_used = votes.inside_used;
+  for (std::size_t i = 0; i < shifted.size(); ++i) {
+    if (std::ranges::any_of(joints.positions, [&](const Vec3f& p) { return (shifted[i] - p).norm() <= reach; })) continue;
+    rest.positions.push_back(votes.positions[i]);
+    rest.weights.push_back(votes.weights[i]);
+  }
+  return rest;
+}
+
+// Joints for what the first search left over, by one with twice its bandwidth, farther than that from those that there are.
+void add_spread_joints(JointSet& joints, const Votes& rest, double all, const geometry::VoxelGrid& voxels, Mirror mirror,
+                       JointExtractionOptions options) {
+  if (rest.positions.empty()) return;
+  const JointSet before = joints;
+  options.bandwidth *= 2.0f;
+  const float h = options.bandwidth;
+  const auto shifted = mean_shift(rest.positions, rest.weights, mirror, {.bandwidth = h, .step = options.step}).points;
+  std::vector<float> shares = kernel_density(shifted, rest.weights, mirror, h);
+  for (float& share : shares) share = static_cast<float>(static_cast<double>(share) / all);
+  for (const Mode& mode : modes_of(shifted, shares, mirror, h)) {
+    const auto taken = [&](const Vec3f& p) { return (p - mode.position).norm() <= h || (p - mirrored(mode.position)).norm() <= h; };
+    if (mode.share >= options.spread_share && std::ranges::none_of(before.positions, taken))
+      add_mode(joints, mode, rest, shifted, voxels, mirror, options);
+  }
+}
+
 JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxels, const MirrorFrame& frame, Mirror mirror,
                              const JointExtractionOptions& options) {
   JointExtraction out;
@@ -161,6 +191,8 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
   prune(modes, options.min_share * h / kDefaultBandwidth);
   for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
+  const double all = std::accumulate(votes.weights.begin(), votes.weights.end(), 0.0) * (mirror == Mirror::across_x ? 2.0 : 1.0);
+  add_spread_joints(out.joints, unexplained(votes, shifted, out.joints, 1.5f * h), all, voxels, mirror, options);
   out.explained = explained_share(out.joints, shifted, votes.weights, h);
   return out;
 }

@@ -82,7 +82,7 @@ TEST(JointExtraction, without_symmetry_each_joint_stands_for_itself) {
 TEST(JointExtraction, both_sides_vote_for_a_pair) {
   // The left arm is seen 0.02 too high, the right one 0.02 too low.
   JointCandidates seen = candidates_around({{0, 0.5f, 0}, {0.3f, 0.72f, 0}, {-0.3f, 0.68f, 0}}, 200, 0.005f, 5);
-  const auto found = extract_joints(seen, body(), kMiddle);
+  const auto found = extract_joints(seen, body(), kMiddle, {.bandwidth = 0.035f});
   ASSERT_EQ(found.joints.size(), 3u);
   EXPECT_LT(distance_to_nearest({0.3f, 0.7f, 0}, found.joints.positions), 0.004f);
   expect_exactly_symmetric(found.joints);
@@ -143,6 +143,22 @@ TEST(JointExtraction, where_there_is_no_volume_the_inside_test_is_left_out) {
   const auto found = extract_joints(candidates_around(figure(), 60, 0.01f, 11), geometry::VoxelGrid{}, kMiddle);
   EXPECT_FALSE(found.inside_used);
   EXPECT_EQ(found.joints.size(), figure().size());
+}
+
+// Two joints that the votes agree on and one between them, in whose place they are spread over 0.1.
+TEST(JointExtraction, a_joint_whose_votes_are_spread_is_found_with_twice_the_bandwidth) {
+  JointCandidates seen;
+  for (int i = 0; i < 400; ++i)
+    for (const float y : {0.2f, 0.9f}) seen.positions.emplace_back(0.0f, y, 1e-5f * static_cast<float>(i));
+  for (int i = 0; i < 60; ++i) seen.positions.emplace_back(0.0f, 0.5f + 0.1f * static_cast<float>(i) / 59.0f, 0.0f);
+  seen.attention.assign(seen.positions.size(), 1.0f);
+  const auto found = [&](float spread_share) {
+    return extract_joints(seen, geometry::VoxelGrid{}, std::nullopt, {.min_share = 0.05f, .spread_share = spread_share}).joints;
+  };
+  EXPECT_EQ(found(1.0f).size(), 2u);
+  const JointSet joints = found(0.02f);
+  ASSERT_EQ(joints.size(), 3u);
+  EXPECT_NEAR(joints.positions.back().y(), 0.55f, 0.02f);
 }
 
 TEST(JointExtraction, nothing_attended_to_gives_no_joints) {

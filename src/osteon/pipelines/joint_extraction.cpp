@@ -47,6 +47,13 @@ std::vector<std::uint32_t> by_density(const std::vector<float>& density) {
   return order;
 }
 
+// How the threshold on the share follows the bandwidth h: the votes of one joint that a bandwidth smaller than their spread gathers grow
+// faster than with it.
+float share_scale(float h) {
+  const float ratio = h / kDefaultBandwidth;
+  return ratio < 1.0f ? ratio * ratio : ratio;
+}
+
 struct Mode {
   Vec3f position;  // x == 0 for a mode on the plane; for a pair the one of the two that a candidate made
   bool is_pair;    // it and its mirror image
@@ -189,7 +196,7 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   const float h = options.bandwidth;
   const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step}).points;
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
-  prune(modes, options.min_share * h / kDefaultBandwidth);
+  prune(modes, options.min_share * share_scale(h));
   for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
   const double all = std::accumulate(votes.weights.begin(), votes.weights.end(), 0.0) * (mirror == Mirror::across_x ? 2.0 : 1.0);
   add_spread_joints(out.joints, unexplained(votes, shifted, out.joints, 1.5f * h), all, voxels, mirror, options);

@@ -27,8 +27,8 @@ struct JointExtractionOptions {
   float bandwidth = kDefaultBandwidth;
   float step = 0.3f;             // of the mean shift
   float min_attention = 1e-3f;   // candidates below are ignored
-  float min_share = 9e-3f;       // a joint gathers at least this share of all attention within the default bandwidth; in proportion
-                                 // less within a finer one and more within a coarser one
+  float min_share = 9e-3f;       // a joint gathers at least this share of all attention within the default bandwidth; less
+                                 // within a finer one (by the square) and more within a coarser one (in proportion)
   float spread_share = 0.02f;    // of a joint that is found only with twice the bandwidth, among the votes that no other joint explains
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
                                  // other side's attention

@@ -6,7 +6,7 @@
 // Where the joints are, as the vertices see it. Ours, in place of RigNet's JointNet and MaskNet (nets/rignet.h): one body for displacement
 // and attention; a vertex starts from the middle of the body beneath it (geometry/vote_features.h) instead of having to find it out; more
 // and narrower graph convolutions.
-// An eighth of the parameters of the paper's two networks: in training a CPU goes through about four times as many characters in the same
+// A fifteenth of the parameters of the paper's two networks: in training a CPU goes through about four times as many characters in the same
 // time. What it gains is in docs/results.md.
 namespace osteon::nets {
 

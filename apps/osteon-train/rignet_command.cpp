@@ -67,6 +67,9 @@ void add_common_options(CLI::App& command, Arguments& a) {
   command.add_option("--reduce", a.options.augment.reduce, "How often a mesh is reduced (not for skin and bind)")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  command.add_option("--fold", a.options.augment.fold, "How often a character gets a coarser rig")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command.add_option("--proportion", articulate.proportion, "Standard deviation of the logarithm of a part's size")->capture_default_str();
   command.add_option("--seed", a.options.seed)->capture_default_str();
   command.add_option("--device", a.device, "cpu, cuda or cuda:N")->capture_default_str();

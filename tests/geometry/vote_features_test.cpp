@@ -50,8 +50,22 @@ TEST(VoteFeatures, turn_with_the_shape) {
   const VoteFeatures here = vote_features(box), there = vote_features(shapes::transformed(box, turn));
   int same = 0;
   for (VertexId v : box.positions.ids())
-    if (std::abs(there.thicknesses[v] - here.thicknesses[v]) < 0.05f && (there.to_middle[v] - turn * here.to_middle[v]).norm() < 0.03f) ++same;
+    if (std::abs(there.thicknesses[v] - here.thicknesses[v]) < 0.05f && (there.to_middle[v] - turn * here.to_middle[v]).norm() < 0.03f)
+      ++same;
   EXPECT_GT(same, static_cast<int>(0.9 * static_cast<double>(box.positions.size())));  // the rays around the normal begin elsewhere
+}
+
+TEST(VoteRows, hold_the_features_the_level_of_detail_and_waves_of_the_middle) {
+  VoteFeatures f{{Vec3f(0, 0, 1)}, {Vec3f(0.25f, 0, -0.5f)}, {0.7f}};
+  const Vec3f position(0, 0.125f, 0.5f);  // the middle is (1/4, 1/8, 0)
+  const std::vector<float> row = vote_rows({&position, 1}, f, std::exp(4.0f));
+  ASSERT_EQ(row.size(), static_cast<std::size_t>(kVoteFeatures));
+  const float half = std::sqrt(0.5f);
+  const std::vector<float> expected{0, 0,  1,    0.25f, 0, -0.5f, 0.7f, 1,  // as they are
+                                    1, 0,  half, half,  0, 1,               // a wave of length 1: pi/2, pi/4, 0
+                                    0, -1, 1,    0,     0, 1,               // 1/2
+                                    0, 1,  0,    -1,    0, 1};              // 1/4
+  for (std::size_t i = 0; i < row.size(); ++i) EXPECT_NEAR(row[i], expected[i], 1e-5f) << i;
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ ExampleInput renumbered(const ExampleInput& input, const std::vector<std::uint32
   for (std::size_t v = 0; v < place.size(); ++v) {
     std::copy_n(input.mesh.positions.begin() + static_cast<std::ptrdiff_t>(3 * v), 3, out.mesh.positions.begin() + 3 * place[v]);
     std::copy_n(input.skin_features.begin() + static_cast<std::ptrdiff_t>(43 * v), 43, out.skin_features.begin() + 43 * place[v]);
-    std::copy_n(input.vote_features.begin() + static_cast<std::ptrdiff_t>(7 * v), 7, out.vote_features.begin() + 7 * place[v]);
+    std::copy_n(input.vote_features.begin() + static_cast<std::ptrdiff_t>(nets::vote_features * v), nets::vote_features,
+                out.vote_features.begin() + nets::vote_features * place[v]);
   }
   auto edges = [&](const nets::EdgeArrays& before) {
     std::vector<std::uint32_t> offsets{0}, members;

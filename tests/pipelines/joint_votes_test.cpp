@@ -18,8 +18,8 @@ TEST(JointVotes, of_a_silent_network_are_the_middles_of_the_body_in_all_views) {
       test::untrained_models({Network::votes, Network::bones, Network::root, Network::bind}, test::LastLayer::zero);
   const TriangleMesh mesh = geometry::make_working_mesh(shapes::capsule(0.2f, 1.0f)).mesh;
   const geometry::Neighbourhoods ring = geometry::one_ring(mesh), near = geometry::evenly(geometry::geodesic_balls(mesh), 10);
-  const JointCandidates votes =
-      joint_votes(mesh, infer::single_mesh(mesh.positions.raw(), {ring.offsets, ring.members}, {near.offsets, near.members}), silent);
+  const JointCandidates votes = joint_votes(
+      mesh, infer::single_mesh(mesh.positions.raw(), {ring.offsets, ring.members}, {near.offsets, near.members}), silent, 20.0f);
   const geometry::VoteFeatures features = geometry::vote_features(mesh);
   const std::size_t count = mesh.positions.size();
   ASSERT_EQ(votes.positions.size(), 4 * count);
@@ -28,6 +28,14 @@ TEST(JointVotes, of_a_silent_network_are_the_middles_of_the_body_in_all_views) {
     EXPECT_LT((votes.positions[i] - mesh.positions[v] - features.to_middle[v]).norm(), 1e-5f);
     EXPECT_FLOAT_EQ(votes.attention[i], 0.5f);
   }
+}
+
+TEST(ExpectedJoints, grow_with_the_triangles_and_with_the_detail_that_is_asked_for) {
+  EXPECT_NEAR(expected_joints(1000, 0.5f), 13.4f, 1e-4f);
+  EXPECT_NEAR(expected_joints(1000, 1.0f), 4.0f * 13.4f, 1e-3f);
+  EXPECT_NEAR(expected_joints(1000, 0.0f), 13.4f / 4.0f, 1e-4f);
+  EXPECT_LT(expected_joints(500, 0.5f), expected_joints(5000, 0.5f));
+  EXPECT_EQ(expected_joints(10000, 0.5f), expected_joints(1000000, 0.5f));  // a scan is not a finer character
 }
 
 }  // namespace

@@ -14,9 +14,8 @@ Eigen::Matrix3f random_linear(const AugmentOptions& options, Random& random) {
   for (float& s : scale) s = std::exp(random.uniform(-options.stretch, options.stretch));
   if (random.uniform() < options.mirror) scale.x() = -scale.x();
   float yaw = random.uniform(-options.yaw, options.yaw);
-  const bool quarter_turn = random.uniform() < options.quarter_turn;
-  const auto quarters = static_cast<float>(1 + random.below(3));
-  if (quarter_turn) yaw += quarters * 0.5f * std::numbers::pi_v<float>;
+  if (random.uniform() < options.half_turn) yaw += std::numbers::pi_v<float>;
+  if (random.uniform() < options.quarter_turn) yaw += 0.5f * std::numbers::pi_v<float>;
   const float about_x = random.uniform(-options.tilt, options.tilt), about_z = random.uniform(-options.tilt, options.tilt);
   return turn(about_x, Vec3f::UnitX()) * turn(about_z, Vec3f::UnitZ()) * turn(yaw, Vec3f::UnitY()) * scale.asDiagonal();
 }

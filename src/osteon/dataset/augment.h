@@ -10,17 +10,20 @@
 namespace osteon::dataset {
 
 struct AugmentOptions {
-  float mirror = 0.5f;        // probability of x -> -x
-  float quarter_turn = 0.1f;  // probability of turning by 90, 180 or 270 degrees about y
-  float yaw = 0.2f;           // largest small turn about y, radians
-  float tilt = 0.07f;         // largest turns about x and z
-  float stretch = 0.12f;      // each axis is scaled by exp(u), |u| <= stretch
+  float mirror = 0.5f;         // probability of x -> -x
+  float half_turn = 0.5f;      // probability of turning by 180 degrees about y: which way characters face is nobody's rule
+  float quarter_turn = 0.05f;  // probability of turning by 90 degrees
+  float yaw = 0.2f;            // largest small turn about y, radians
+  float tilt = 0.07f;          // largest turns about x and z
+  float stretch = 0.12f;       // each axis is scaled by exp(u), |u| <= stretch
   ArticulateOptions articulate = {};
-  float reduce = 0.7f;                // probability of fewer vertices, where no weights are learned ...
-  std::size_t least_vertices = 500;   // ... from here up to as many as there are
+  float fold = 0.5f;                 // probability of a coarser rig: fewer joints, down to ...
+  float least_fold = 0.25f;          // ... this share of them
+  float joint_count_blur = 0.15f;    // standard deviation of the logarithm of the number of joints that the voting network is told
+  float reduce = 0.7f;               // probability of fewer vertices, where no weights are learned ...
+  std::size_t least_vertices = 500;  // ... from here up to as many as there are
 
-
-  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f}; }
+  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f, 1.0f, 0.0f, 0.0f}; }
 };
 
 // An affine map of a character: its labels stay true.

@@ -7,11 +7,14 @@
 #include <numeric>
 
 #include "osteon/base/parallel.h"
+#include "osteon/dataset/fold.h"
 #include "osteon/geometry/decimate.h"
 #include "osteon/geometry/symmetry.h"
 
 namespace osteon::dataset {
 namespace {
+
+constexpr std::size_t kLeastJoints = 4;  // no rig is folded to fewer
 
 std::vector<float> plane_distances(const Skeleton& skeleton, const std::optional<Plane>& symmetry) {
   const Plane plane = symmetry.value_or(Plane{Vec3f::UnitX(), 0.0f});
@@ -51,14 +54,21 @@ Example example_of(PreparedCharacter character, Parts parts, const std::optional
   return example;
 }
 
-// The example itself, or one made of it, which is then kept in `made`: moved through its rig; its mesh reduced.
+// The example itself, or one made of it, which is then kept in `made`: moved through its rig; with fewer joints; its mesh reduced.
 const Example& varied(const Example& example, Parts parts, const AugmentOptions& options, Random& random, std::optional<Example>& made) {
   const bool articulate = random.uniform() < options.articulate.probability && example.character.joints() > 1;
+  const bool fold = random.uniform() < options.fold && example.character.joints() > kLeastJoints;
   const bool reduce = random.uniform() < options.reduce && parts == Parts::joints && example.character.vertices() > options.least_vertices;
-  if (!articulate && !reduce) return example;
+  if (!articulate && !fold && !reduce) return example;
   PreparedCharacter changed =
-      articulate ? articulated(example.character, random_articulation(example.character.skeleton, example.symmetry, options.articulate, random))
-                 : example.character;
+      articulate
+          ? articulated(example.character, random_articulation(example.character.skeleton, example.symmetry, options.articulate, random))
+          : example.character;
+  if (fold) {
+    const float share = std::exp(random.uniform(std::log(options.least_fold), 0.0f));
+    changed = folded(changed, std::max(kLeastJoints, static_cast<std::size_t>(share * static_cast<float>(changed.joints()))),
+                     example.symmetry, random);
+  }
   if (reduce) {
     const std::size_t target = options.least_vertices + random.below(changed.vertices() - options.least_vertices);
     changed.mesh = geometry::decimate(changed.mesh, {.target_vertices = target}).mesh;
@@ -91,13 +101,16 @@ void add_joints(Batch& batch, const Example& example, const Placement& placement
   batch.targets.attention.insert(batch.targets.attention.end(), attention.begin(), attention.end());
 }
 
-void add_vote_features(Batch& batch, const Example& example, const Placement& placement) {
+// `joints`: how many the network is told that there are.
+void add_vote_features(Batch& batch, const Example& example, const Placement& placement, float joints) {
   geometry::VoteFeatures placed = example.vote_features;
   const Eigen::Matrix3f of_normals = placement.linear.inverse().transpose();
   for (Vec3f& n : placed.normals) n = (of_normals * n).normalized();
   for (Vec3f& way : placed.to_middle) way = placement.linear * way;
   for (float& thickness : placed.thicknesses) thickness *= placement.length_scale;
-  const std::vector<float> rows = geometry::vote_rows(placed);
+  std::vector<Vec3f> positions;
+  for (const Vec3f& p : example.character.mesh.positions) positions.push_back(placement.apply(p));
+  const std::vector<float> rows = geometry::vote_rows(positions, placed, joints);
   batch.inputs.vote_features.insert(batch.inputs.vote_features.end(), rows.begin(), rows.end());
 }
 
@@ -219,7 +232,9 @@ Batch training_batch(std::span<const Example* const> examples, const BatchOption
     const Placement placement = random_placement(character.mesh.positions.raw(), augment, random);
     add_mesh(batch.inputs.mesh, character, placement, geometry::drawn(character.balls, options.neighbours, random));
     add_joints(batch, example, placement);
-    if (options.parts == Parts::joints) add_vote_features(batch, example, placement);
+    if (options.parts == Parts::joints)
+      add_vote_features(batch, example, placement,
+                        static_cast<float>(character.joints()) * std::exp(augment.joint_count_blur * random.normal()));
     if (options.parts == Parts::skin) add_skin(batch, example, placement);
     if (options.parts == Parts::bind) add_choices(batch, example, placement);
     if (options.parts != Parts::pairs) continue;
@@ -237,7 +252,7 @@ Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& 
     const PreparedCharacter& character = example->character;
     add_mesh(batch.inputs.mesh, character, {}, geometry::evenly(character.balls, options.neighbours));
     add_joints(batch, *example, {});
-    if (options.parts == Parts::joints) add_vote_features(batch, *example, {});
+    if (options.parts == Parts::joints) add_vote_features(batch, *example, {}, static_cast<float>(character.joints()));
     if (options.parts == Parts::skin) add_skin(batch, *example, {});
     if (options.parts == Parts::bind) add_choices(batch, *example, {});
     if (options.parts != Parts::pairs) continue;

@@ -57,12 +57,21 @@ VoteFeatures vote_features(const TriangleMesh& mesh) {
   return out;
 }
 
-std::vector<float> vote_rows(const VoteFeatures& features) {
+std::vector<float> vote_rows(std::span<const Vec3f> positions, const VoteFeatures& features, float joints) {
+  const float detail = std::log(joints) - 3.0f;  // about zero in the middle
   std::vector<float> rows;
   rows.reserve(features.normals.size() * kVoteFeatures);
   for (VertexId v : features.normals.ids()) {
     for (const Vec3f& vector : {features.normals[v], features.to_middle[v]}) rows.insert(rows.end(), vector.begin(), vector.end());
     rows.push_back(features.thicknesses[v]);
+    rows.push_back(detail);
+    const Vec3f middle = positions[index(v)] + features.to_middle[v];
+    for (const float frequency : {2.0f, 4.0f, 8.0f})
+      for (const float x : middle) {
+        const float angle = frequency * std::numbers::pi_v<float> * x;
+        rows.push_back(std::sin(angle));
+        rows.push_back(std::cos(angle));
+      }
   }
   return rows;
 }

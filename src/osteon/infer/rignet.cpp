@@ -85,7 +85,7 @@ nets::PairArrays pairs_in_both_orders(std::int32_t joints, const Matrix& feature
 
   Matrix both(2 * features.rows(), features.cols());
   Matrix reversed = features;
-  reversed.leftCols(3) = features.middleCols(3, 3);
+  reversed.leftCols(3) = features.middleCols(nets::vote_to_middle, 3);
   reversed.middleCols(3, 3) = features.leftCols(3);
   both << features, reversed;
   out.features.assign(both.data(), both.data() + both.size());

@@ -42,7 +42,7 @@ class RignetModels {
   RignetModels(RignetModels&&) noexcept;
   RignetModels& operator=(RignetModels&&) noexcept;
 
-  JointVotes votes(const nets::MeshArrays& mesh, std::span<const float> vote_features) const;  // features (V,7) of nets/voting.h
+  JointVotes votes(const nets::MeshArrays& mesh, std::span<const float> vote_features) const;  // features (V,26) of nets/voting.h
 
   // (P,1) how likely a bone joins the two joints of each pair (i, j), i < j, in the order (0,1), (0,2), ..., (1,2), ... : the mean over
   // both orders of the two. pair_features: (P,8) first joint, second joint, their distance, share of the way that is inside the shape.

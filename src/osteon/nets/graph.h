@@ -111,7 +111,7 @@ struct NetworkInputs {
   JointArrays joints;
   PairArrays pairs;
   std::vector<float> skin_features;  // (V,43)
-  std::vector<float> vote_features;  // (V,7)
+  std::vector<float> vote_features;  // (V,26)
   BindArrays choices;
 };
 

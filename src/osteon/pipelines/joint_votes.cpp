@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/pipelines/joint_votes.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "osteon/geometry/vote_features.h"
 #include "osteon/geometry/working_mesh.h"
@@ -9,6 +11,7 @@
 namespace osteon::pipelines {
 namespace {
 
+constexpr float kJointsAtThousand = 13.4f, kJointsExponent = 0.41f;  // of the regression of log joints on log triangles
 constexpr float kTurn = 0.15f;     // radians about the vertical, within what the networks were trained with
 constexpr float kStretch = 1.06f;  // of the height of the turned views, and its inverse
 
@@ -30,7 +33,13 @@ geometry::VoteFeatures seen(geometry::VoteFeatures features, const Eigen::Matrix
 
 }  // namespace
 
-JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const infer::RignetModels& models) {
+float expected_joints(std::size_t triangles, float detail) {
+  constexpr float kLeast = 300.0f, kMost = 10000.0f;  // outside there were next to no characters to learn from
+  const float size = std::clamp(static_cast<float>(triangles), kLeast, kMost);
+  return kJointsAtThousand * std::pow(size / 1000.0f, kJointsExponent) * std::pow(16.0f, detail - 0.5f);
+}
+
+JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const infer::RignetModels& models, float joints) {
   const geometry::VoteFeatures features = geometry::vote_features(mesh);
   JointCandidates out;
   for (const Eigen::Matrix3f& view : views()) {
@@ -43,7 +52,8 @@ JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& gr
       p = frame.apply(p);
       arrays.positions.insert(arrays.positions.end(), p.begin(), p.end());
     }
-    const infer::JointVotes votes = models.votes(arrays, geometry::vote_rows(seen(features, view, frame.scale)));
+    const infer::JointVotes votes =
+        models.votes(arrays, geometry::vote_rows(shown.positions.raw(), seen(features, view, frame.scale), joints));
     const Eigen::Matrix3f back = view.inverse();
     for (Eigen::Index v = 0; v < votes.attention.rows(); ++v) {
       const Vec3f q = shown.positions.raw()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose();

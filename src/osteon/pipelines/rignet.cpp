@@ -51,6 +51,7 @@ struct Body {
   nets::MeshArrays graph;
   geometry::VoxelGrid voxels;
   std::optional<Plane> symmetry;
+  std::size_t triangles = 0;  // of the mesh that was given
 
   const std::vector<Vec3f>& positions() const { return working.mesh.positions.raw(); }
 };
@@ -66,6 +67,7 @@ void check(const RignetOptions& options) {
 
 Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stages) {
   Body body;
+  body.triangles = mesh.faces.size();
   body.working = stages.run("working mesh", [&] { return geometry::make_working_mesh(mesh, options.working_mesh); });
   const TriangleMesh& working = body.working.mesh;
   body.ring = geometry::one_ring(working);
@@ -123,7 +125,8 @@ void warn_about_joints(const JointExtraction& found, const RignetOptions& option
 
 Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RigReport& report,
                           Stages& stages) {
-  const JointCandidates seen = stages.run("joint networks", [&] { return joint_votes(body.working.mesh, body.graph, models); });
+  const float wanted = options.joints ? static_cast<float>(*options.joints) : expected_joints(body.triangles, options.detail);
+  const JointCandidates seen = stages.run("joint networks", [&] { return joint_votes(body.working.mesh, body.graph, models, wanted); });
   const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, body, options); });
   warn_about_joints(found, options, report.warnings);
   report.bandwidth = found.bandwidth;

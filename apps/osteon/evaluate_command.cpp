@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "load_options.h"
 #include "model_options.h"
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/manifest.h"
@@ -29,6 +30,9 @@ struct EvaluateArguments {
   std::filesystem::path predicted, reference, data, json;
   ModelOptions models;
   std::string split = "val", task = "all";
+  int turn = 0;  // quarter turns
+  io::UpAxis up = io::UpAxis::y;
+  float scale = 1.0f;
   pipelines::RignetOptions options;
 };
 
@@ -127,16 +131,49 @@ Outcome attempt(Work&& work) {
   }
 }
 
+// How the system is shown the characters: turned by right angles (exactly, without rounding) and scaled.
+struct Showing {
+  Eigen::Matrix3f turn;
+  float scale;
+
+  explicit Showing(const EvaluateArguments& arguments) : turn(Eigen::Matrix3f::Identity()), scale(arguments.scale) {
+    Eigen::Matrix3f about_y, to_z, to_x;
+    about_y << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+    to_z << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+    to_x << 0, 1, 0, -1, 0, 0, 0, 0, 1;
+    for (int i = 0; i < arguments.turn; ++i) turn = about_y * turn;
+    if (arguments.up == io::UpAxis::z) turn = to_z * turn;
+    if (arguments.up == io::UpAxis::x) turn = to_x * turn;
+  }
+  TriangleMesh mesh(TriangleMesh mesh) const {
+    for (Vec3f& p : mesh.positions) p = scale * (turn * p);
+    return mesh;
+  }
+  Skeleton skeleton(Skeleton skeleton) const {
+    skeleton = turned(std::move(skeleton), turn);
+    for (Vec3f& p : skeleton.rest_positions) p *= scale;
+    return skeleton;
+  }
+  Skeleton undo(Skeleton skeleton) const {
+    for (Vec3f& p : skeleton.rest_positions) p /= scale;
+    return turned(std::move(skeleton), turn.transpose());
+  }
+};
+
 // The system sees the bare mesh; for the skin it also gets the reference skeleton, as in RigNet's table 2.
 std::vector<double> score_skeleton(const Rig& original, const Reference& reference, const infer::RignetModels& models,
-                                   const pipelines::RignetOptions& options) {
-  return reference.skeleton_scores(pipelines::rig_character(original.mesh, models, options).skeleton);
+                                   const EvaluateArguments& arguments) {
+  const Showing showing(arguments);
+  const auto result = pipelines::rig_character(showing.mesh(original.mesh), models, arguments.options);
+  return reference.skeleton_scores(showing.undo(result.skeleton));
 }
 
 std::vector<double> score_skin(const Rig& original, const Reference& reference, const infer::RignetModels& models,
-                               pipelines::RignetOptions options) {
-  options.skeleton = original.skeleton;
-  return reference.skin_scores(pipelines::rig_character(original.mesh, models, options).weights);
+                               const EvaluateArguments& arguments) {
+  const Showing showing(arguments);
+  pipelines::RignetOptions options = arguments.options;
+  options.skeleton = showing.skeleton(original.skeleton);
+  return reference.skin_scores(pipelines::rig_character(showing.mesh(original.mesh), models, options).weights);
 }
 
 using Outcomes = std::array<Outcome, 2>;  // skeleton, skin
@@ -147,8 +184,8 @@ Outcomes evaluate_character(const dataset::ManifestEntry& entry, const EvaluateA
     const Rig rig = load_rig(entry.file);
     const Reference reference(rig);
     Outcomes out;
-    if (arguments.task != "skin") out[0] = attempt([&] { return score_skeleton(rig, reference, models, arguments.options); });
-    if (arguments.task != "skeleton") out[1] = attempt([&] { return score_skin(rig, reference, models, arguments.options); });
+    if (arguments.task != "skin") out[0] = attempt([&] { return score_skeleton(rig, reference, models, arguments); });
+    if (arguments.task != "skeleton") out[1] = attempt([&] { return score_skin(rig, reference, models, arguments); });
     return out;
   } catch (const Error& e) {
     return {Outcome{{}, e.what()}, Outcome{{}, e.what()}};
@@ -207,6 +244,17 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--split", arguments->split, "Which split of the manifest")->capture_default_str();
   command->add_option("--task", arguments->task, "What to measure")
       ->check(CLI::IsMember({"skeleton", "skin", "all"}))
+      ->capture_default_str();
+  command
+      ->add_option_function<int>(
+          "--turn", [arguments](int degrees) { arguments->turn = degrees / 90; }, "Show every character turned about the up axis")
+      ->check(CLI::IsMember({0, 90, 180, 270}));
+  command->add_option("--up", arguments->up, "Show every character with this axis up")
+      ->transform(CLI::CheckedTransformer(up_axes()))
+      ->type_name("x|y|z")
+      ->default_str("y");
+  command->add_option("--scale", arguments->scale, "Show every character so much larger")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   arguments->models.add_to(*command);
   pipelines::RignetOptions& options = arguments->options;

@@ -32,6 +32,7 @@ void warn(const std::filesystem::path& file, const std::vector<std::string>& mes
 
 pipelines::RignetOptions pipeline_options(const RigArguments& arguments) {
   auto options = arguments.rignet;
+  if (arguments.load.up) options.up = pipelines::Up::y;  // the file was read so that y is up
   options.skin.max_influences = static_cast<std::size_t>(arguments.save.max_influences);
   if (arguments.skeleton) options.skeleton = io::load_skeleton(*arguments.skeleton, arguments.load);
   return options;

@@ -19,6 +19,7 @@ Json to_json(const pipelines::RigReport& report) {
   return {{"vertices", report.vertices},
           {"working_vertices", report.working_vertices},
           {"joints", report.joints},
+          {"up", report.is_z_up ? "z" : "y"},
           {"confidence", report.confidence},
           {"joint_confidence", number(report.joint_confidence)},
           {"explained", number(report.explained)},

@@ -84,6 +84,27 @@ TEST_F(RigCommand, the_same_rig_for_any_order_of_vertices) {
   EXPECT_TRUE(weights_by_place(a) == weights_by_place(b));
 }
 
+TEST_F(RigCommand, a_character_that_stands_on_z_gets_the_same_rig_in_its_own_frame) {
+  TriangleMesh z_up = mesh_;
+  for (Vec3f& p : z_up.positions) p = Vec3f(p.x(), -p.z(), p.y());
+  io::save_obj(folder_ / "z.obj", z_up);
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --report hero.json").code, 0);
+  ASSERT_EQ(osteon(folder_, "rig z.obj -o z.glb --report z.json").code, 0);
+  ASSERT_EQ(osteon(folder_, "rig z.obj -o turned.glb --up z").code, 0);
+  EXPECT_THAT(test::content(folder_ / "hero.json"), HasSubstr("\"up\": \"y\""));
+  EXPECT_THAT(test::content(folder_ / "z.json"), HasSubstr("\"up\": \"z\""));
+
+  const io::Asset hero = io::load(folder_ / "hero.glb"), z = io::load(folder_ / "z.glb"), turned = io::load(folder_ / "turned.glb");
+  EXPECT_EQ(z.skeleton->names, hero.skeleton->names);
+  EXPECT_EQ(z.skeleton->parents, hero.skeleton->parents);
+  EXPECT_TRUE(*z.weights == *hero.weights);
+  for (const JointId j : hero.skeleton->names.ids()) {
+    const Vec3f& p = hero.skeleton->rest_positions[j];
+    EXPECT_VEC3_NEAR(z.skeleton->rest_positions[j], Vec3f(p.x(), -p.z(), p.y()), 1e-5f);
+    EXPECT_VEC3_NEAR(turned.skeleton->rest_positions[j], p, 1e-5f);  // given the axis, the file itself is turned
+  }
+}
+
 TEST_F(RigCommand, a_given_skeleton_is_kept) {
   const Rig puppet = synth::make_character(synth::Kind::Biped, 3, {96, synth::Finish::Smooth});
   ASSERT_EQ(osteon(folder_, "synth biped --seed 3 --smooth --cells 96 -o given.glb").code, 0);

@@ -5,8 +5,10 @@
 #include <numeric>
 
 #include "osteon/base/parallel.h"
+#include "osteon/geometry/mirror_pairs.h"
 #include "osteon/mesh/shapes.h"
 #include "osteon/rig/rig.h"
+#include "osteon/synth/character.h"
 #include "untrained.h"
 
 namespace osteon::pipelines {
@@ -99,6 +101,113 @@ TEST(RigCharacter, renumbered_vertices_and_faces_give_the_same_rig) {
   EXPECT_EQ(a.skeleton.parents, b.skeleton.parents);
   EXPECT_EQ(a.skeleton.rest_positions, b.skeleton.rest_positions);
   for (VertexId v : mesh.positions.ids()) EXPECT_TRUE(std::ranges::equal(a.weights[v], b.weights[new_place[index(v)]])) << index(v);
+}
+
+Eigen::Matrix3f by_columns(const Vec3f& x, const Vec3f& y, const Vec3f& z) {
+  Eigen::Matrix3f out;
+  out << x, y, z;
+  return out;
+}
+
+TEST(RigCharacter, a_turned_mesh_gets_the_same_rig_turned) {
+  // On the ground, with a face. Around the vertical axis and on the plane z = 0.
+  const TriangleMesh mesh = shapes::merged(placed(figure(), {-10, 5, -20}, 0.0f), placed(shapes::icosphere(3, 5), {0, 165, 15}, 0.0f));
+  const geometry::WorkingMeshOptions small{.target_vertices = 500, .min_vertices = 400};
+  const RignetResult straight = rig_character(mesh, untrained(), {.working_mesh = small});
+  const Vec3f x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  for (const Eigen::Matrix3f& turn : {by_columns(-z, y, x), by_columns(-x, y, -z), by_columns(z, y, -x), by_columns(x, z, -y)}) {
+    const RignetResult result = rig_character(turned(mesh, turn), untrained(), {.working_mesh = small});
+    EXPECT_EQ(result.skeleton.names, straight.skeleton.names);
+    EXPECT_EQ(result.skeleton.parents, straight.skeleton.parents);
+    EXPECT_EQ(result.weights, straight.weights);
+    EXPECT_EQ(result.report.is_z_up, turn * y == z);
+    for (JointId j : result.skeleton.names.ids()) {
+      EXPECT_EQ(result.skeleton.rest_positions[j], turn * straight.skeleton.rest_positions[j]);
+      const Quatf expected = Quatf(turn) * straight.skeleton.rest_orientations[j];
+      EXPECT_LT(result.skeleton.rest_orientations[j].angularDistance(expected), 1e-3f);
+    }
+  }
+}
+
+// Joint -> the joint in whose place its mirror image is, to within `tolerance`.
+PerJoint<JointId> images(const Skeleton& skeleton, const Plane& plane, float tolerance) {
+  PerJoint<JointId> out;
+  const auto joints = skeleton.names.ids();
+  for (const Vec3f& p : skeleton.rest_positions) {
+    const auto distance = [&](JointId j) { return (skeleton.rest_positions[j] - plane.mirror(p)).norm(); };
+    const JointId image = *std::ranges::min_element(joints, {}, distance);
+    EXPECT_LE(distance(image), tolerance);
+    out.push_back(image);
+  }
+  return out;
+}
+
+std::string other_side(std::string name) {
+  for (const auto& [here, there] : {std::pair("left", "right"), std::pair("right", "left")})
+    if (name.starts_with(here)) return there + name.substr(std::string_view(here).size());
+  return name;
+}
+
+float weight(const SkinWeights& weights, VertexId v, JointId j) {
+  for (const Influence& i : weights[v])
+    if (i.joint == j) return i.weight;
+  return 0.0f;
+}
+
+// A character and, for every vertex, its mirror image across x = 0; images to the last bit.
+struct Symmetric {
+  TriangleMesh mesh;
+  PerVertex<VertexId> image;
+
+  explicit Symmetric(synth::Kind kind) {
+    mesh = synth::make_character(kind, 1, {.cells = 48, .finish = synth::Finish::Smooth}).mesh;
+    const geometry::CleanMesh clean = geometry::clean(mesh);
+    TriangleMesh unit = clean.mesh;
+    const geometry::Normalization frame = geometry::normalization_of(unit);
+    for (Vec3f& p : unit.positions) p = frame.apply(p);
+    const auto pairs = geometry::mirror_pairs(unit, {Vec3f::UnitX(), 0.0f});
+    if (!pairs) throw Error("not symmetric");
+    PerVertex<VertexId> someone(unit.positions.size());
+    for (VertexId v : mesh.positions.ids()) someone[clean.from_original[v]] = v;
+    for (VertexId v : mesh.positions.ids()) {
+      const VertexId here = clean.from_original[v], there = pairs->partner[here];
+      const Vec3f& p = clean.mesh.positions[std::min(here, there)];
+      mesh.positions[v] = here == there ? Vec3f(0, p.y(), p.z()) : here < there ? p : Vec3f(-p.x(), p.y(), p.z());
+      image.push_back(someone[there]);
+    }
+  }
+};
+
+// `there` is the plane of the mesh where it is now.
+void expect_symmetric_rig(const TriangleMesh& at_place, const PerVertex<VertexId>& image, const Plane& there, float tolerance) {
+  const RignetResult result =
+      rig_character(at_place, untrained(), {.working_mesh = geometry::WorkingMeshOptions{.target_vertices = 500, .min_vertices = 400}});
+  validate(Rig{at_place, result.skeleton, result.weights});
+  const auto partner = images(result.skeleton, there, tolerance);
+  for (JointId j : partner.ids()) {
+    EXPECT_EQ(partner[partner[j]], j);
+    EXPECT_EQ(result.skeleton.names[partner[j]], other_side(result.skeleton.names[j]));
+    if (result.skeleton.parents[j]) {
+      EXPECT_EQ(result.skeleton.parents[partner[j]], partner[*result.skeleton.parents[j]]);
+    }
+  }
+  int unequal = 0;
+  for (VertexId v : image.ids())
+    for (JointId j : partner.ids()) unequal += weight(result.weights, v, j) != weight(result.weights, image[v], partner[j]);
+  EXPECT_EQ(unequal, 0);
+}
+
+TEST(RigCharacter, a_mesh_that_is_its_own_mirror_image_gets_such_a_rig) {
+  const Transform place = Eigen::Translation3f(3, 1, -2) * Transform(Eigen::AngleAxisf(0.7f, Vec3f::UnitY())) * Eigen::Scaling(1.7f);
+  const Vec3f normal = (place.linear() * Vec3f::UnitX()).normalized();
+  const Plane there{normal, normal.dot(place.translation())};
+  for (const synth::Kind kind : {synth::Kind::Biped, synth::Kind::Spider, synth::Kind::Robot, synth::Kind::BlockyHumanoid}) {
+    SCOPED_TRACE(synth::name(kind));
+    const Symmetric character(kind);
+    expect_symmetric_rig(character.mesh, character.image, {Vec3f::UnitX(), 0.0f}, 0.0f);
+    const TriangleMesh elsewhere = shapes::transformed(character.mesh, place);
+    expect_symmetric_rig(elsewhere, character.image, there, 1e-5f * bounds(elsewhere).sizes().maxCoeff());
+  }
 }
 
 TEST(RigCharacter, a_given_skeleton_is_kept_and_skinned) {

@@ -259,5 +259,18 @@ TEST(SkeletonTree, partners_differ_by_left_and_right_in_their_names) {
   }
 }
 
+TEST(SkeletonTree, seen_from_behind_left_is_right) {
+  const Person p = person();
+  const JointTree tree = connect(p.joints, p.evidence);
+  const auto [before, from] = make_skeleton(p.joints, tree, {1.0f, Vec3f::Zero()});
+  const auto [behind, same] = make_skeleton(p.joints, tree, {1.0f, Vec3f::Zero()}, true);
+  EXPECT_EQ(from, same);
+  EXPECT_EQ(before.rest_positions, behind.rest_positions);
+  for (JointId j : from.ids())
+    if (p.joints.positions[from[j]].x() > 0.0f) {
+      EXPECT_TRUE(before.names[j].starts_with("left_") && behind.names[j].starts_with("right_"));
+    }
+}
+
 }  // namespace
 }  // namespace osteon::pipelines

@@ -47,6 +47,29 @@ TEST(Skeleton, orientation_points_y_at_the_main_child) {
   validate(s);
 }
 
+TEST(Skeleton, orientation_points_between_equal_children_unless_they_are_opposite) {
+  Skeleton s;
+  const JointId hip = s.add("hip", std::nullopt, {0, 1, 0});
+  for (float side : {1.0f, -1.0f}) s.add(side > 0 ? "left" : "right", hip, {side * 0.3f, 0.5f, 0});
+  orient_along_bones(s);
+  EXPECT_VEC3_NEAR(s.rest_orientations[hip] * Vec3f::UnitY(), Vec3f(0, -1, 0), 1e-6f);
+  for (JointId j : {JointId{1}, JointId{2}}) s.rest_positions[j].y() = 1.0f;
+  orient_along_bones(s);
+  EXPECT_TRUE(s.rest_orientations[hip].isApprox(Quatf::Identity()));
+}
+
+TEST(Skeleton, turning_it_turns_positions_and_axes) {
+  Skeleton s = small();
+  orient_along_bones(s);
+  const Eigen::Matrix3f turn = Eigen::AngleAxisf(0.7f, Vec3f(1, 2, 3).normalized()).toRotationMatrix();
+  const Skeleton t = turned(s, turn);
+  validate(t);
+  for (JointId j : s.names.ids()) {
+    EXPECT_VEC3_NEAR(t.rest_positions[j], turn * s.rest_positions[j], 1e-6f);
+    EXPECT_VEC3_NEAR(t.rest_orientations[j] * Vec3f::UnitY(), turn * (s.rest_orientations[j] * Vec3f::UnitY()), 1e-6f);
+  }
+}
+
 TEST(Skeleton, validate_names_the_culprit) {
   Skeleton s = small();
   s.names[JointId{3}] = "leg";

@@ -19,8 +19,8 @@ std::array<Eigen::Matrix3f, 4> views() {
   const auto turned = [](float angle, float height) {
     return Eigen::Matrix3f(Eigen::AngleAxisf(angle, Vec3f::UnitY()).toRotationMatrix() * Vec3f(1.0f, height, 1.0f).asDiagonal());
   };
-  const Eigen::Matrix3f mirror = Vec3f(-1.0f, 1.0f, 1.0f).asDiagonal();
-  return {Eigen::Matrix3f::Identity(), mirror, turned(kTurn, kStretch), mirror * turned(kTurn, 1.0f / kStretch)};
+  const Eigen::Matrix3f mirror = Vec3f(-1.0f, 1.0f, 1.0f).asDiagonal(), about = Vec3f(-1.0f, 1.0f, -1.0f).asDiagonal();
+  return {Eigen::Matrix3f::Identity(), mirror, about * turned(kTurn, kStretch), about * mirror * turned(kTurn, 1.0f / kStretch)};
 }
 
 geometry::VoteFeatures seen(geometry::VoteFeatures features, const Eigen::Matrix3f& view, float scale) {

@@ -12,8 +12,9 @@ namespace osteon::pipelines {
 float expected_joints(std::size_t triangles, float detail);
 
 // Where the vertices of a working mesh see joints, in its frame. The network is shown the character several times: as it is, mirrored, and
-// both turned and stretched a little; all answers are heard together, so that one chance error counts less: (4V) candidates, V for each
-// view. `joints`: how many the rig shall have, roughly. `graph` is that of `mesh`. Pre: `mesh` is normalised.
+// both from behind, turned and stretched a little; all answers are heard together, so that one chance error counts less, and so that nobody
+// has to know the front: (4V) candidates, V for each view. `joints`: how many the rig shall have, roughly. `graph` is that of `mesh`.
+// Pre: `mesh` is normalised.
 JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const infer::RignetModels& models, float joints);
 
 }  // namespace osteon::pipelines

@@ -19,6 +19,7 @@ struct StageTime {
 // How far a rig can be trusted, and how it came about. Lengths: longest side of the character = 1.
 struct RigReport {
   std::size_t vertices = 0, working_vertices = 0, joints = 0;
+  bool is_z_up = false;  // z was taken for the up axis, else y
   // 0..1: geometric mean of the parts below that apply; 0 where nothing sensible was found. Not a probability.
   float confidence = 0.0f;
   std::optional<float> joint_confidence;  // mean over the joints of the attention of the vertices that point there; none: skeleton given

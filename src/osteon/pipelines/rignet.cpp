@@ -9,6 +9,7 @@
 
 #include "osteon/base/error.h"
 #include "osteon/geometry/bind_features.h"
+#include "osteon/geometry/mirror_pairs.h"
 #include "osteon/geometry/neighbourhoods.h"
 #include "osteon/geometry/rignet_features.h"
 #include "osteon/geometry/symmetry.h"
@@ -16,6 +17,7 @@
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/pipelines/joint_votes.h"
+#include "osteon/pipelines/mirrored_skin.h"
 #include "osteon/skin/distance_weights.h"
 
 namespace osteon::pipelines {
@@ -31,7 +33,7 @@ class Stages {
 
   template <class Work>
   auto run(std::string_view name, const Work& work) {
-    constexpr double kStages = 11.0;
+    constexpr double kStages = 17.0;
     if (progress_) progress_(name, static_cast<double>(report_.stages.size()) / kStages);
     const auto start = std::chrono::steady_clock::now();
     auto result = work();
@@ -44,14 +46,16 @@ class Stages {
   const Progress& progress_;
 };
 
-// What the stages know of the character, in the frame of the networks.
+// What the stages know of the character, in its own frame, normalised.
 struct Body {
+  BodyFrame frame;
   geometry::WorkingMesh working;
   geometry::Neighbourhoods ring;
   nets::MeshArrays graph;
   geometry::VoxelGrid voxels;
   std::optional<Plane> symmetry;
-  std::size_t triangles = 0;  // of the mesh that was given
+  std::optional<geometry::MirrorPairs> pairs;  // of working.clean.mesh
+  std::size_t triangles = 0;                   // of the mesh that was given
 
   const std::vector<Vec3f>& positions() const { return working.mesh.positions.raw(); }
 };
@@ -65,23 +69,51 @@ void check(const RignetOptions& options) {
   if (options.skeleton) validate(*options.skeleton);
 }
 
+// The working mesh in the body's frame, and the plane of symmetry.
+std::optional<Plane> stand(Body& body, const TriangleMesh& mesh, const RignetOptions& options, Stages& stages) {
+  const auto look = [&] {
+    body.working =
+        stages.run("working mesh", [&] { return geometry::make_working_mesh(turned(mesh, body.frame.turn), options.working_mesh); });
+    return stages.run("symmetry", [&] { return geometry::symmetry_plane(body.working.mesh); });
+  };
+  body.frame = stages.run("body frame", [&] { return body_frame(mesh, options.up); });
+  std::optional<Plane> symmetry = look();
+  for (int turns = 0; symmetry && turns < 2; ++turns) {
+    const auto better = aligned(body.frame, *symmetry, mesh);
+    if (!better) break;
+    body.frame = *better;
+    symmetry = look();
+  }
+  return symmetry;
+}
+
+std::optional<geometry::MirrorPairs> pairs_of(const geometry::WorkingMesh& working, const Plane& symmetry) {
+  TriangleMesh mesh = working.clean.mesh;
+  for (Vec3f& p : mesh.positions) p = working.normalization.apply(p);
+  return geometry::mirror_pairs(mesh, symmetry);
+}
+
 Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stages) {
   Body body;
   body.triangles = mesh.faces.size();
-  body.working = stages.run("working mesh", [&] { return geometry::make_working_mesh(mesh, options.working_mesh); });
+  const std::optional<Plane> symmetry = stand(body, mesh, options, stages);
+  if (options.symmetry == Symmetry::automatic && symmetry) {
+    body.pairs = stages.run("mirror pairs", [&] { return pairs_of(body.working, *symmetry); });
+    body.symmetry = body.pairs ? body.pairs->plane : *symmetry;
+  }
   const TriangleMesh& working = body.working.mesh;
   body.ring = geometry::one_ring(working);
   const auto geodesic =
       stages.run("neighbourhoods", [&] { return geometry::evenly(geometry::geodesic_balls(working), kGeodesicNeighbours); });
   body.graph = infer::single_mesh(body.positions(), {body.ring.offsets, body.ring.members}, {geodesic.offsets, geodesic.members});
   body.voxels = stages.run("voxels", [&] { return geometry::voxelize(working); });
-  if (options.symmetry == Symmetry::automatic) body.symmetry = stages.run("symmetry", [&] { return geometry::symmetry_plane(working); });
   return body;
 }
 
 JointExtraction find_joints(const JointCandidates& seen, const Body& body, const RignetOptions& options) {
-  if (options.joints) return extract_joint_count(seen, body.voxels, body.symmetry, *options.joints, options.extraction);
   JointExtractionOptions extraction = options.extraction;
+  if (body.pairs) extraction.one_sided_share = 0.0f;  // where nothing is one-sided, all pairs stay
+  if (options.joints) return extract_joint_count(seen, body.voxels, body.symmetry, *options.joints, extraction);
   extraction.bandwidth = options.bandwidth.value_or(bandwidth_of_detail(options.detail));
   return extract_joints(seen, body.voxels, body.symmetry, extraction);
 }
@@ -107,7 +139,7 @@ TreeEvidence evidence(const JointSet& joints, const Body& body, const infer::Rig
   return {symmetric(pairs, positions.size()), {root.data(), root.data() + root.size()}, samples_outside(positions, body.voxels)};
 }
 
-// A valid rig for a character in which no joints were seen.
+// A valid rig, in the body's frame, for a character in which no joints were seen.
 Skeleton single_joint(const Body& body) {
   const auto& positions = body.positions();
   const Vec3f mean = std::accumulate(positions.begin(), positions.end(), Vec3f(Vec3f::Zero())) / static_cast<float>(positions.size());
@@ -123,6 +155,7 @@ void warn_about_joints(const JointExtraction& found, const RignetOptions& option
     warnings.push_back(fmt::format("{} joints were asked for; the nearest that was found is {}", *options.joints, found.joints.size()));
 }
 
+// In the body's frame, in the unit of the mesh.
 Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RigReport& report,
                           Stages& stages) {
   const float wanted = options.joints ? static_cast<float>(*options.joints) : expected_joints(body.triangles, options.detail);
@@ -138,7 +171,14 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
   const auto& confidence = found.joints.confidence;
   report.joint_confidence = std::accumulate(confidence.begin(), confidence.end(), 0.0f) / static_cast<float>(confidence.size());
   report.bone_confidence = tree.likelihood;
-  return make_skeleton(found.joints, tree, body.working.normalization).skeleton;
+  return make_skeleton(found.joints, tree, body.working.normalization, body.frame.is_seen_from_behind).skeleton;
+}
+
+std::optional<PerJoint<JointId>> joint_partners(const Skeleton& skeleton, const Body& body) {
+  if (!body.symmetry) return std::nullopt;
+  PerJoint<Vec3f> positions = skeleton.rest_positions;
+  for (Vec3f& p : positions) p = body.working.normalization.apply(p);
+  return mirror_partners(skeleton, positions, *body.symmetry);
 }
 
 // The skeleton's bones in the frame of the networks.
@@ -226,13 +266,22 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   report.vertices = mesh.positions.size();
   report.working_vertices = body.positions().size();
   report.repairs = body.working.clean.repairs;
-  result.skeleton = options.skeleton ? *options.skeleton : predict_skeleton(body, models, options, report, stages);
-  const std::vector<Bone> list = normalised_bones(result.skeleton, body.working.normalization);
+  report.is_z_up = body.frame.is_z_up;
+  if (report.is_z_up) report.warnings.push_back("the character stands on the plane z = 0: z was taken for its up axis");
+  const Eigen::Matrix3f& turn = body.frame.turn;
+  const Skeleton skeleton = options.skeleton ? turned(*options.skeleton, turn) : predict_skeleton(body, models, options, report, stages);
+  result.skeleton = options.skeleton ? *options.skeleton : turned(skeleton, turn.transpose());
+  const std::vector<Bone> list = normalised_bones(skeleton, body.working.normalization);
   const Matrix distances = stages.run("bone distances", [&] { return distances_to(list, body); });
-  const Matrix raw =
-      stages.run("skin network", [&] { return predict_weights(list, result.skeleton.size(), distances, body, models, report.warnings); });
-  result.weights = stages.run("weights", [&] { return finish_weights(raw, body.working, body.ring, options.skin); });
-  assess(body, result.skeleton, distances, report);
+  Matrix raw = stages.run("skin network", [&] { return predict_weights(list, skeleton.size(), distances, body, models, report.warnings); });
+  result.weights = stages.run("weights", [&] {
+    const auto partners = joint_partners(skeleton, body);
+    if (partners) raw = mean_with_image(raw, body.working.mesh, *body.symmetry, *partners);
+    SkinWeights weights = finish_weights(raw, body.working, body.ring, options.skin);
+    if (!partners || !body.pairs) return weights;
+    return mirrored_exactly(weights, body.working.clean.from_original, body.pairs->partner, *partners, options.skin.max_influences);
+  });
+  assess(body, skeleton, distances, report);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include "osteon/base/progress.h"
 #include "osteon/infer/rignet.h"
+#include "osteon/pipelines/body_frame.h"
 #include "osteon/pipelines/joint_extraction.h"
 #include "osteon/pipelines/rig_report.h"
 #include "osteon/pipelines/skeleton_tree.h"
@@ -21,6 +22,7 @@ struct RignetOptions {
   float detail = 0.5f;                     // 0 (few joints) .. 1 (many)
   std::optional<std::size_t> joints = {};  // about this many: the bandwidth is searched, and the two above are not read
   Symmetry symmetry = Symmetry::automatic;
+  Up up = Up::automatic;
   std::optional<Skeleton> skeleton = {};  // use this one, in the mesh's world coordinates, and only skin it
   geometry::WorkingMeshOptions working_mesh = {};
   JointExtractionOptions extraction = {};  // its bandwidth is not read
@@ -38,9 +40,15 @@ struct RignetResult {
 constexpr float kLowConfidence = 0.25f;
 
 // The whole of RigNet: Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
-// mesh -> clean working mesh -> displacement and attention -> joints -> tree -> skin -> weights on the mesh that was given.
+// mesh -> its own frame (body_frame.h) -> clean working mesh -> displacement and attention -> joints -> tree -> skin -> weights on the mesh
+// that was given.
 // The rig is always valid: where the networks find no joints it is a single one in the middle, with confidence 0 and a warning.
 // The same for any order of vertices and faces (weights follow their vertices) and any number of threads.
+// The same, turned, for a mesh turned by right angles about the up axis, or that stands on z = 0 instead of y = 0.
+// Where the mesh is its own mirror image vertex by vertex, so is the rig: the joints (to rounding; bit by bit where the mesh is so, with
+// its plane at x = 0 or z = 0), the tree, the names (left and right), and bit by bit the weights. Where only the shape is symmetric, the
+// weights are as a field. Two exceptions: a skeleton without any joint on the plane has its root on one side, and a joint without partner
+// (a sword) leaves all weights as they are.
 // Throws Error for a mesh without surface, options out of range or an invalid skeleton; Cancelled if `progress` does.
 // Pre: validate(mesh) holds.
 RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options = {},

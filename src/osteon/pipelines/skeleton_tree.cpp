@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "osteon/geometry/stance.h"
 #include "osteon/pipelines/joint_names.h"
 
 namespace osteon::pipelines {
@@ -168,7 +169,9 @@ JointTree connect(const JointSet& joints, const TreeEvidence& evidence, const Tr
   return tree;
 }
 
-TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const geometry::Normalization& normalization) {
+TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const geometry::Normalization& normalization,
+                           bool is_seen_from_behind) {
+  const Eigen::Matrix3f to_front = geometry::turn_to_front(is_seen_from_behind ? Vec3f(0, 0, -1) : Vec3f(0, 0, 1));
   std::vector<std::vector<std::size_t>> kids(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (tree.parents[j]) kids[*tree.parents[j]].push_back(j);
@@ -179,7 +182,7 @@ TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const 
     const std::size_t j = open.back();
     open.pop_back();
     const auto parent = tree.parents[j] ? std::optional(id_of[*tree.parents[j]]) : std::nullopt;
-    id_of[j] = out.skeleton.add("", parent, joints.positions[j]);
+    id_of[j] = out.skeleton.add("", parent, to_front * joints.positions[j]);
     out.from.push_back(j);
     open.insert(open.end(), kids[j].rbegin(), kids[j].rend());
   }
@@ -188,8 +191,10 @@ TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const 
     for (std::size_t j : out.from) partner.push_back(joints.partner[j] ? std::optional(id_of[*joints.partner[j]]) : std::nullopt);
     return partner;
   }());
-  for (Vec3f& p : out.skeleton.rest_positions) p = normalization.undo(joints.frame.from(p));
+  for (JointId j : out.from.ids())
+    out.skeleton.rest_positions[j] = to_front * normalization.undo(joints.frame.from(joints.positions[out.from[j]]));
   orient_along_bones(out.skeleton);
+  out.skeleton = turned(std::move(out.skeleton), to_front);  // a half turn undoes itself
   return out;
 }
 

@@ -41,11 +41,13 @@ struct JointTree {
 // forget its probability (facts, traps R9 and R10). Pre: J >= 1, sizes agree.
 JointTree connect(const JointSet& joints, const TreeEvidence& evidence, const TreeOptions& options = {});
 
-// In world space: depth first from the root, in the order of the joint set; named (joint_names.h) and oriented along the bones.
+// In the unit and frame that `normalization` undoes to: depth first from the root, in the order of the joint set; named (joint_names.h) and
+// oriented along the bones, as one sees the character from its front, which is +z, or -z where `is_seen_from_behind`.
 struct TreeSkeleton {
   Skeleton skeleton;
   PerJoint<std::size_t> from;  // skeleton joint -> index in the joint set
 };
-TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const geometry::Normalization& normalization);
+TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const geometry::Normalization& normalization,
+                           bool is_seen_from_behind = false);
 
 }  // namespace osteon::pipelines

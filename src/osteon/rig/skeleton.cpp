@@ -10,6 +10,8 @@
 namespace osteon {
 namespace {
 
+constexpr float kOpposed = 0.05f;  // ways to children that cancel each other to this share of their length
+
 // A frame whose +y is `direction` and whose +z is as near to world +z as possible (to world -y where the bone runs along z).
 Quatf along(const Vec3f& direction) {
   const Vec3f y = direction.normalized();
@@ -52,7 +54,8 @@ void validate(const Skeleton& skeleton) {
     if (!seen.insert(name).second) throw Error("joint {} has the name '{}' of an earlier joint", index(j), name);
     const auto parent = skeleton.parents[j];
     if (!parent && index(j) != 0) throw Error("joint {} ('{}') is a second root", index(j), name);
-    if (parent && *parent >= j) throw Error("joint {} ('{}') has parent {}; parents come before their children", index(j), name, index(*parent));
+    if (parent && *parent >= j)
+      throw Error("joint {} ('{}') has parent {}; parents come before their children", index(j), name, index(*parent));
     if (!skeleton.rest_positions[j].allFinite()) throw Error("joint {} ('{}') has no finite rest position", index(j), name);
     const float norm = skeleton.rest_orientations[j].norm();
     if (!(std::abs(norm - 1.0f) < 1e-3f)) throw Error("joint {} ('{}') has an orientation of length {}; expected 1", index(j), name, norm);
@@ -71,13 +74,29 @@ void orient_along_bones(Skeleton& skeleton) {
   const auto counts = descendant_counts(skeleton);
   for (JointId j : skeleton.names.ids()) {
     const Quatf inherited = skeleton.parents[j] ? skeleton.rest_orientations[*skeleton.parents[j]] : Quatf::Identity();
-    std::optional<JointId> main_child;
+    Vec3f way = Vec3f::Zero();
+    float length = 0.0f;
+    int most = -1;
     for (JointId kid : kids[j]) {
-      const bool has_length = (skeleton.rest_positions[kid] - skeleton.rest_positions[j]).norm() > 1e-6f;
-      if (has_length && (!main_child || counts[kid] > counts[*main_child])) main_child = kid;
+      const Vec3f to_kid = skeleton.rest_positions[kid] - skeleton.rest_positions[j];
+      if (!(to_kid.norm() > 1e-6f) || counts[kid] < most) continue;
+      if (counts[kid] > most) {
+        way.setZero();
+        length = 0.0f;
+      }
+      most = counts[kid];
+      way += to_kid;
+      length += to_kid.norm();
     }
-    skeleton.rest_orientations[j] = main_child ? along(skeleton.rest_positions[*main_child] - skeleton.rest_positions[j]) : inherited;
+    skeleton.rest_orientations[j] = way.norm() > kOpposed * length ? along(way) : inherited;
   }
+}
+
+Skeleton turned(Skeleton skeleton, const Eigen::Matrix3f& rotation) {
+  const Quatf turn(rotation);
+  for (Vec3f& p : skeleton.rest_positions) p = rotation * p;
+  for (Quatf& q : skeleton.rest_orientations) q = (turn * q).normalized();
+  return skeleton;
 }
 
 std::vector<Bone> bones(const Skeleton& skeleton) {

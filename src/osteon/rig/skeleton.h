@@ -18,10 +18,10 @@ using PerJoint = Indexed<JointId, T>;
 // A joint tree in its rest pose. Invariants (see validate): at least one joint; equally many names, parents, positions and orientations;
 // names not empty and unique; parents[j] < j; joint 0 is the only root; everything finite, orientations of unit length.
 struct Skeleton {
-  PerJoint<std::string> names;                  // UTF-8
-  PerJoint<std::optional<JointId>> parents;     // empty for the root
-  PerJoint<Vec3f> rest_positions;               // world space, metres
-  PerJoint<Quatf> rest_orientations;            // joint axes -> world axes
+  PerJoint<std::string> names;               // UTF-8
+  PerJoint<std::optional<JointId>> parents;  // empty for the root
+  PerJoint<Vec3f> rest_positions;            // world space, metres
+  PerJoint<Quatf> rest_orientations;         // joint axes -> world axes
 
   std::size_t size() const { return names.size(); }
   JointId add(std::string name, std::optional<JointId> parent, const Vec3f& position, const Quatf& orientation = Quatf::Identity());
@@ -32,9 +32,13 @@ void validate(const Skeleton& skeleton);
 
 PerJoint<std::vector<JointId>> children(const Skeleton& skeleton);  // in joint order
 
-// Turns each joint's +y to its main child (the one with the most descendants; ties: the smaller joint) as Blender's bones have it, with +z as
-// near to world +z as that allows; a leaf takes its parent's orientation, a lone root the world's.
+// Turns each joint's +y to its main child (the one with the most descendants; between several equal ones) as Blender's bones have it, with
+// +z as near to world +z as that allows; a leaf takes its parent's orientation, a lone root the world's, and so does a joint between
+// children that pull in opposite directions.
 void orient_along_bones(Skeleton& skeleton);
+
+// Turned about the origin, joint axes included.
+Skeleton turned(Skeleton skeleton, const Eigen::Matrix3f& rotation);
 
 // A bone: the segment from a joint to one of its children, or the point at a leaf joint (RigNet, sec. 4.3; facts 7.1).
 // The skin weight of a bone belongs to its start joint.

@@ -66,6 +66,13 @@ void limit(int resource, std::size_t value) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
+// The sanitizer reserves more address space than any limit.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kLimitsMemory = false;
+#else
+constexpr bool kLimitsMemory = true;
+#endif
+
 std::size_t address_space() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -75,9 +82,7 @@ std::size_t address_space() {
 void set_limits(const IsolationLimits& limits) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.seconds);
-#if !defined(__SANITIZE_ADDRESS__)  // the sanitizer reserves more address space than any limit
-  limit(RLIMIT_AS, address_space() + limits.memory);
-#endif
+  if constexpr (kLimitsMemory) limit(RLIMIT_AS, address_space() + limits.memory);
 }
 
 // Never returns: nothing of the parent's is to be run or written out a second time.

@@ -196,7 +196,7 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   const float h = options.bandwidth;
   const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step}).points;
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
-  prune(modes, options.min_share * share_scale(h));
+  prune(modes, options.min_share * share_scale(h) * std::sqrt(20.0f / options.expected_joints));
   for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
   const double all = std::accumulate(votes.weights.begin(), votes.weights.end(), 0.0) * (mirror == Mirror::across_x ? 2.0 : 1.0);
   add_spread_joints(out.joints, unexplained(votes, shifted, out.joints, 1.5f * h), all, voxels, mirror, options);

@@ -110,8 +110,9 @@ Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stage
   return body;
 }
 
-JointExtraction find_joints(const JointCandidates& seen, const Body& body, const RignetOptions& options) {
+JointExtraction find_joints(const JointCandidates& seen, float expected, const Body& body, const RignetOptions& options) {
   JointExtractionOptions extraction = options.extraction;
+  extraction.expected_joints = expected;
   if (body.pairs) extraction.one_sided_share = 0.0f;  // where nothing is one-sided, all pairs stay
   if (options.joints) return extract_joint_count(seen, body.voxels, body.symmetry, *options.joints, extraction);
   extraction.bandwidth = options.bandwidth.value_or(bandwidth_of_detail(options.detail));
@@ -160,7 +161,7 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
                           Stages& stages) {
   const float wanted = options.joints ? static_cast<float>(*options.joints) : expected_joints(body.triangles, options.detail);
   const JointCandidates seen = stages.run("joint networks", [&] { return joint_votes(body.working.mesh, body.graph, models, wanted); });
-  const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, body, options); });
+  const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, wanted, body, options); });
   warn_about_joints(found, options, report.warnings);
   report.bandwidth = found.bandwidth;
   report.explained = found.explained;

@@ -25,7 +25,7 @@ struct RignetOptions {
   Up up = Up::automatic;
   std::optional<Skeleton> skeleton = {};  // use this one, in the mesh's world coordinates, and only skin it
   geometry::WorkingMeshOptions working_mesh = {};
-  JointExtractionOptions extraction = {};  // its bandwidth is not read
+  JointExtractionOptions extraction = {};  // its bandwidth and number of joints are not read
   TreeOptions tree = {};
   SkinPredictionOptions skin = {};  // with the number of influences
 };

@@ -3,16 +3,32 @@
 #include <cstdio>
 #include <exception>
 
+#include "finetune_command.h"
+#include "osteon/base/progress.h"
 #include "rignet_command.h"
+
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
 
 namespace {
 
-enum ExitCode { done = 0, failed = 1, bad_input = 2 };
+// The tensors of a step are as large as those of the last one: memory that is given back is asked for again, and every page of it then
+// costs a fault. The C library gives back blocks of some megabytes at once; here it keeps them.
+void keep_freed_memory() {
+#ifdef M_MMAP_THRESHOLD
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that is allowed
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
+
+enum ExitCode { done = 0, failed = 1, bad_input = 2, cancelled = 130 };
 
 int run(int argc, char** argv) {
-  CLI::App app{"Trains Osteon's networks on characters made ready by `osteon dataset prepare`", "osteon-train"};
+  CLI::App app{"Trains Osteon's networks", "osteon-train"};
   app.require_subcommand(1);
   app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {} (see --help)\n", e.what()); });
+  osteon::app::add_finetune_command(app);
   osteon::app::add_rignet_commands(app);
   try {
     app.parse(argc, argv);
@@ -25,11 +41,14 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   try {
     return run(argc, argv);
   } catch (const osteon::Error& e) {
     std::fprintf(stderr, "error: %s\n", e.what());
     return bad_input;
+  } catch (const osteon::Cancelled&) {
+    return cancelled;
   } catch (const std::exception& e) {  // LibTorch's own, such as a GPU without memory left
     std::fprintf(stderr, "error: %s\n", e.what());
     return failed;

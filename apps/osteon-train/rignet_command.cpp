@@ -4,10 +4,10 @@
 #include <ATen/Parallel.h>
 
 #include <algorithm>
-#include <csignal>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "interrupt.h"
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/pack.h"
 #include "osteon/train/trainer.h"
@@ -22,14 +22,12 @@ using nets::rignet::Network;
 using train::Task;
 namespace fs = std::filesystem;
 
-volatile std::sig_atomic_t interrupted = 0;
-
 struct Arguments {
   std::vector<fs::path> data;
   fs::path validation, out, init, attention, attention_out, log;
   std::string device = "cpu";
   int threads = 0;
-  bool resume = false, combined = false, no_augmentation = false;
+  bool resume = false, combined = false, no_augmentation = false, profile = false;
   double bandwidth = 0.04;
   train::TrainOptions options;
 
@@ -77,6 +75,7 @@ void add_common_options(CLI::App& command, Arguments& a) {
   command.add_option("--checkpoint", a.options.checkpoint, "Written every two minutes, at the end and on Ctrl-C");
   command.add_flag("--resume", a.resume, "Go on from the checkpoint");
   command.add_option("--log", a.log, "Figures as JSON lines, appended");
+  command.add_flag("--profile", a.profile, "Say at the end where the time went");
   command.add_option("--report-seconds", a.options.report_seconds)->capture_default_str();
   command.add_option("--validate-seconds", a.options.validate_seconds)->capture_default_str();
 }
@@ -165,10 +164,10 @@ void run(const CLI::App& command, Task task, Arguments a) {
   std::fprintf(stderr, "%s: %zu characters, %zu for validation, %llu parameters\n", command.get_name().c_str(), training.size(),
                validation.size(), static_cast<unsigned long long>(train::count_of_trained(trainer.model())));
   TrainingLog log(a.log);
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  std::signal(SIGTERM, [](int) { interrupted = 1; });
+  catch_interrupts();
   const train::TrainResult result = trainer.run(training, validation, std::ref(log), [] { return interrupted != 0; });
   save_weights(command, a, task, trainer.model(), result);
+  if (a.profile) print_profile(trainer.profile());
 }
 
 void add_command(CLI::App& app, Task task, const char* name, const char* description) {
@@ -183,7 +182,8 @@ void add_command(CLI::App& app, Task task, const char* name, const char* descrip
 }  // namespace
 
 void add_rignet_commands(CLI::App& app) {
-  add_command(app, Task::votes, "rignet.votes", "How far each vertex is from a joint and how well it can tell, in one network (the default)");
+  add_command(app, Task::votes, "rignet.votes",
+              "How far each vertex is from a joint and how well it can tell, in one network (the default)");
   add_command(app, Task::attention, "rignet.attention", "Where on the surface the joints are");
   add_command(app, Task::joints, "rignet.joints", "How far each vertex is from a joint; --combined: the whole joint stage");
   add_command(app, Task::bones, "rignet.bones", "Which joints a bone connects");

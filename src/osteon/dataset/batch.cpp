@@ -36,6 +36,7 @@ Example example_of(PreparedCharacter character, Parts parts, const std::optional
   Example example;
   example.symmetry = symmetry;
   example.plane_distance = plane_distances(character.skeleton, example.symmetry);
+  if ((parts == Parts::skin || parts == Parts::bind) && character.nearest_bones.rows() == 0) derive_nearest_bones(character);
   if (parts == Parts::joints) example.vote_features = geometry::vote_features(character.mesh);
   if (parts == Parts::pairs) {
     example.pair_features = geometry::pair_features(character.skeleton.rest_positions.raw(), character.voxels);

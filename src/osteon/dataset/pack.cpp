@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/dataset/pack.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,6 +18,7 @@ using Arrays = std::map<std::string, Array>;
 
 constexpr std::uint16_t kNoParent = 65535;
 constexpr float kWeightUnit = 65535.0f;  // weights are stored as u16 of 1/65535
+constexpr float kSteps = 65535.0f;       // so many on a mesh's longest side
 
 std::int64_t length(std::size_t n) { return static_cast<std::int64_t>(n); }
 
@@ -24,6 +26,32 @@ Array of_points(std::span<const Vec3f> points) {
   std::vector<float> flat;
   for (const Vec3f& p : points) flat.insert(flat.end(), {p.x(), p.y(), p.z()});
   return Array::of<float>(flat, {length(points.size()), 3});
+}
+
+// Numbers that are small for most characters: u8 where all of them fit, else u16.
+Array of_numbers(const std::vector<std::uint16_t>& numbers) {
+  const std::vector<std::int64_t> shape{length(numbers.size())};
+  if (std::ranges::any_of(numbers, [](std::uint16_t n) { return n > 255; })) return Array::of<std::uint16_t>(numbers, shape);
+  return Array::of<std::uint8_t>(std::vector<std::uint8_t>(numbers.begin(), numbers.end()), shape);
+}
+
+// Positions lie on a lattice: origin + step (i, j, k), with i, j and k stored as u16.
+struct Lattice {
+  Vec3f origin;
+  float step;
+};
+
+Lattice lattice_of(const TriangleMesh& mesh) {
+  const Eigen::AlignedBox3f box = bounds(mesh);
+  return {box.min(), box.sizes().maxCoeff() / kSteps};
+}
+
+Array of_lattice_points(std::span<const Vec3f> points, const Lattice& lattice) {
+  std::vector<std::uint16_t> flat;
+  for (const Vec3f& p : points)
+    for (const float steps : Vec3f((p - lattice.origin) / lattice.step))
+      flat.push_back(static_cast<std::uint16_t>(std::clamp(std::round(steps), 0.0f, kSteps)));
+  return Array::of<std::uint16_t>(flat, {length(points.size()), 3});
 }
 
 Array of_faces(const TriangleMesh& mesh) {
@@ -49,42 +77,35 @@ void add_weights(Arrays& arrays, const std::string& prefix, const SkinWeights& w
       values.push_back(static_cast<std::uint16_t>(std::lround(i.weight * kWeightUnit)));
     }
   }
-  arrays[prefix + "influences"] = Array::of<std::uint16_t>(counts, {length(counts.size())});
-  arrays[prefix + "influence_joints"] = Array::of<std::uint16_t>(joints, {length(joints.size())});
+  arrays[prefix + "influences"] = of_numbers(counts);
+  arrays[prefix + "influence_joints"] = of_numbers(joints);
   arrays[prefix + "influence_weights"] = Array::of<std::uint16_t>(values, {length(values.size())});
-}
-
-void add_nearest(Arrays& arrays, const std::string& prefix, const PreparedCharacter& c) {
-  std::vector<std::uint16_t> bones;
-  for (Eigen::Index i = 0; i < c.nearest_bones.size(); ++i) bones.push_back(static_cast<std::uint16_t>(c.nearest_bones.data()[i]));
-  const std::vector<std::int64_t> shape{c.nearest_bones.rows(), c.nearest_bones.cols()};
-  arrays[prefix + "nearest_bones"] = Array::of<std::uint16_t>(bones, shape);
-  arrays[prefix + "nearest_distances"] =
-      Array::half(std::span(c.nearest_distances.data(), static_cast<std::size_t>(c.nearest_distances.size())), shape);
 }
 
 void add_character(Arrays& arrays, const PreparedCharacter& c) {
   if (c.vertices() > 65535) throw Error("{}: has {} working vertices; at most 65535 can be packed", c.info.id, c.vertices());
   const std::string prefix = c.info.id + "/";
-  arrays[prefix + "positions"] = of_points(c.mesh.positions.raw());
+  arrays[prefix + "positions"] = of_lattice_points(c.mesh.positions.raw(), lattice_of(c.mesh));
   arrays[prefix + "faces"] = of_faces(c.mesh);
   arrays[prefix + "joints"] = of_points(c.skeleton.rest_positions.raw());
   arrays[prefix + "parents"] = of_parents(c.skeleton);
   arrays[prefix + "tolerances"] = Array::of<float>(c.tolerances.raw(), {length(c.joints())});
   arrays[prefix + "attention"] = Array::of<std::uint8_t>(c.attention, {length(c.attention.size())});
   add_weights(arrays, prefix, c.weights);
-  add_nearest(arrays, prefix, c);
 }
 
 json description(const PreparedCharacter& c) {
   const Vec3f& pivot = c.normalization.pivot;
+  const Lattice lattice = lattice_of(c.mesh);
   return {{"id", c.info.id},
           {"group", c.info.group},
           {"category", c.info.category},
           {"notes", c.notes},
           {"joint_names", c.skeleton.names.raw()},
           {"scale", c.normalization.scale},
-          {"pivot", {pivot.x(), pivot.y(), pivot.z()}}};
+          {"pivot", {pivot.x(), pivot.y(), pivot.z()}},
+          {"origin", {lattice.origin.x(), lattice.origin.y(), lattice.origin.z()}},
+          {"step", lattice.step}};
 }
 
 // The arrays of one character, with checks that name it.
@@ -96,16 +117,23 @@ class Reader {
   std::vector<T> values(const char* name) const {
     return file_.at(id_ + "/" + name).values<T>();
   }
+  bool has(const char* name) const { return file_.arrays.contains(id_ + "/" + name); }
+  bool is(const char* name, DType type) const { return file_.at(id_ + "/" + name).dtype == type; }
+  // u8 or u16
+  std::vector<std::uint16_t> numbers(const char* name) const {
+    if (!is(name, DType::u8)) return values<std::uint16_t>(name);
+    const auto small = values<std::uint8_t>(name);
+    return {small.begin(), small.end()};
+  }
   std::int64_t columns(const char* name) const {
     const Array& array = file_.at(id_ + "/" + name);
     if (array.shape.size() != 2) throw Error("{}/{} has {} dimensions; expected 2", id_, name, array.shape.size());
     return array.shape[1];
   }
-  std::vector<Vec3f> points(const char* name) const {
-    if (columns(name) != 3) throw Error("{}/{} has {} columns; expected 3", id_, name, columns(name));
-    const auto flat = values<float>(name);
-    std::vector<Vec3f> out;
-    for (std::size_t i = 0; i + 2 < flat.size(); i += 3) out.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  std::vector<Vec3f> points(const char* name) const { return triples<float>(name); }
+  std::vector<Vec3f> lattice_points(const char* name, const Lattice& lattice) const {
+    std::vector<Vec3f> out = triples<std::uint16_t>(name);
+    for (Vec3f& p : out) p = lattice.origin + lattice.step * p;
     return out;
   }
   void expect(bool holds, const char* what) const {
@@ -113,12 +141,34 @@ class Reader {
   }
 
  private:
+  template <class T>
+  std::vector<Vec3f> triples(const char* name) const {
+    if (columns(name) != 3) throw Error("{}/{} has {} columns; expected 3", id_, name, columns(name));
+    const auto flat = values<T>(name);
+    std::vector<Vec3f> out;
+    for (std::size_t i = 0; i + 2 < flat.size(); i += 3)
+      out.emplace_back(static_cast<float>(flat[i]), static_cast<float>(flat[i + 1]), static_cast<float>(flat[i + 2]));
+    return out;
+  }
+
   const Safetensors& file_;
   std::string id_;
 };
 
-TriangleMesh read_mesh(const Reader& reader) {
-  TriangleMesh mesh{PerVertex<Vec3f>(reader.points("positions")), {}};
+Vec3f read_vector(const json& numbers, const Reader& reader, const char* what) {
+  const auto v = numbers.get<std::vector<float>>();
+  reader.expect(v.size() == 3, what);
+  return {v[0], v[1], v[2]};
+}
+
+std::vector<Vec3f> read_positions(const Reader& reader, const json& about) {
+  if (reader.is("positions", DType::f32)) return reader.points("positions");  // of before
+  return reader.lattice_points("positions",
+                               {read_vector(about.at("origin"), reader, "origin does not have three numbers"), about.at("step")});
+}
+
+TriangleMesh read_mesh(const Reader& reader, const json& about) {
+  TriangleMesh mesh{PerVertex<Vec3f>(read_positions(reader, about)), {}};
   reader.expect(reader.columns("faces") == 3, "faces do not have three columns");
   const auto flat = reader.values<std::uint16_t>("faces");
   for (std::size_t i = 0; i + 2 < flat.size(); i += 3)
@@ -139,8 +189,8 @@ Skeleton read_skeleton(const Reader& reader, const json& names) {
 }
 
 SkinWeights read_weights(const Reader& reader) {
-  const auto counts = reader.values<std::uint16_t>("influences");
-  const auto joints = reader.values<std::uint16_t>("influence_joints"), values = reader.values<std::uint16_t>("influence_weights");
+  const auto counts = reader.numbers("influences"), joints = reader.numbers("influence_joints");
+  const auto values = reader.values<std::uint16_t>("influence_weights");
   SkinWeights weights;
   std::vector<Influence> row;
   std::size_t next = 0;
@@ -153,7 +203,9 @@ SkinWeights read_weights(const Reader& reader) {
   return weights;
 }
 
+// Files of before hold them.
 void read_nearest(const Reader& reader, PreparedCharacter& c) {
+  if (!reader.has("nearest_bones")) return;
   const auto bones = reader.values<std::uint16_t>("nearest_bones");
   const auto distances = reader.values<float>("nearest_distances");
   const auto rows = static_cast<Eigen::Index>(c.vertices()), columns = static_cast<Eigen::Index>(reader.columns("nearest_bones"));
@@ -168,11 +220,9 @@ PreparedCharacter read_character(const Safetensors& file, const json& about) {
   PreparedCharacter c;
   c.info = {about.at("id"), about.at("group"), about.at("category")};
   c.notes = about.at("notes").get<std::vector<std::string>>();
-  const auto pivot = about.at("pivot").get<std::vector<float>>();
   const Reader reader(file, c.info.id);
-  reader.expect(pivot.size() == 3, "pivot does not have three numbers");
-  c.normalization = {about.at("scale").get<float>(), {pivot[0], pivot[1], pivot[2]}};
-  c.mesh = read_mesh(reader);
+  c.normalization = {about.at("scale").get<float>(), read_vector(about.at("pivot"), reader, "pivot does not have three numbers")};
+  c.mesh = read_mesh(reader, about);
   c.skeleton = read_skeleton(reader, about.at("joint_names"));
   c.weights = read_weights(reader);
   validate(c.weights, c.vertices(), c.joints());

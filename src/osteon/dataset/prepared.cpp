@@ -62,12 +62,6 @@ void keep_nearest(const Matrix& distances, int most, PreparedCharacter& out) {
   }
 }
 
-void find_nearest_bones(int most, PreparedCharacter& out) {
-  const std::vector<Bone> all_bones = bones(out.skeleton);
-  const Matrix distances = geometry::volumetric_geodesic_distance(out.mesh, out.voxels, segments(all_bones));
-  keep_nearest(geometry::one_bone_per_joint(distances, starts(all_bones)), most, out);
-}
-
 void note_oddities(const Skeleton& original, PreparedCharacter& out) {
   const std::size_t merged = original.size() - out.joints();
   if (merged > 0) out.notes.push_back(fmt::format("{} joints merged with one at the same place", merged));
@@ -84,14 +78,19 @@ void derive_inputs(PreparedCharacter& character) {
   character.voxels = geometry::voxelize(character.mesh);
 }
 
+void derive_nearest_bones(PreparedCharacter& character, int most) {
+  const std::vector<Bone> all_bones = bones(character.skeleton);
+  const Matrix distances = geometry::volumetric_geodesic_distance(character.mesh, character.voxels, segments(all_bones));
+  keep_nearest(geometry::one_bone_per_joint(distances, starts(all_bones)), most, character);
+}
+
 void derive_from_shape(PreparedCharacter& character, Parts parts) {
   character.one_ring = geometry::one_ring(character.mesh);
   character.balls = geometry::geodesic_balls(character.mesh);
   const std::vector<Vec3f>& joints = character.skeleton.rest_positions.raw();
   if (parts == Parts::joints) character.attention = geometry::attention_labels(character.mesh, joints, parent_indices(character.skeleton));
   if (parts != Parts::joints) character.voxels = geometry::voxelize(character.mesh);
-  if (parts == Parts::skin || parts == Parts::bind)
-    find_nearest_bones(static_cast<int>(character.nearest_bones.cols()), character);
+  if (parts == Parts::skin || parts == Parts::bind) derive_nearest_bones(character, static_cast<int>(character.nearest_bones.cols()));
 }
 
 PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptions& options) {
@@ -112,7 +111,7 @@ PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptio
   const std::vector<int> parents = parent_indices(out.skeleton);
   out.attention = geometry::attention_labels(out.mesh, joints, parents);
   out.tolerances = PerJoint<float>(geometry::joint_tolerances(out.mesh, joints, parents));
-  find_nearest_bones(options.nearest_bones, out);
+  derive_nearest_bones(out, options.nearest_bones);
   note_oddities(rig.skeleton, out);
   return out;
 }

@@ -44,7 +44,8 @@ struct PreparedCharacter {
   std::vector<std::uint8_t> attention;  // (V) 1 where a ray from a joint, perpendicular to its bones, meets the surface (facts 5.2)
   PerJoint<float> tolerances;           // (J) mean length of these rays: half the local diameter; what counts as found in IoU
 
-  // For the skin network: per vertex the nearest bones of `bones(skeleton)` by volumetric geodesic distance, nearest first.
+  // For the skin and the binding network: per vertex the nearest bones of `bones(skeleton)` by volumetric geodesic distance, nearest first.
+  // Costly, so loaded characters have none (0 rows) before derive_nearest_bones(); examples_of() calls it where the network reads them.
   geometry::IndexMatrix nearest_bones;  // (V,N) bone index; N = min(B, options.nearest_bones)
   Matrix nearest_distances;             // (V,N)
 
@@ -61,8 +62,11 @@ enum class Parts { joints, pairs, skin, bind };  // joints: attention too; pairs
 // Fills one_ring, balls and voxels from the mesh (prepare() and loading do so).
 void derive_inputs(PreparedCharacter& character);
 
+// Fills nearest_bones and nearest_distances from the mesh and the skeleton: the nearest `most` bones, or all where there are fewer.
+void derive_nearest_bones(PreparedCharacter& character, int most = PrepareOptions().nearest_bones);
+
 // After the mesh or the joints have changed: everything that follows from them and that `parts` reads. Joints: neighbourhoods and
-// attention; pairs: neighbourhoods and voxels; skin and bind: these and the nearest bones, as many as there were.
+// attention; pairs: neighbourhoods and voxels; skin and bind: these and the nearest bones, as many as there were (not none).
 void derive_from_shape(PreparedCharacter& character, Parts parts);
 
 // Inputs of the skin network, (V, 3 + 8k); pre: k <= options.nearest_bones of its preparation.

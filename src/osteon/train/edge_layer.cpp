@@ -187,8 +187,7 @@ at::Tensor through_hidden(const Graph& graph, const EdgeTerms& terms, const Fold
       float* rows = d + tile.offsets[tile.first] * width;
       edge_hidden(terms, tile, hidden.data());
       gemm(tile.edges(), width, width, {rows, width}, {folded.weight.data(), width}, 0.0f, moved.data(), width);
-      edge_hidden_backward(tile, width, hidden.data(), moved.data(), {norm.constant.data(), norm.slope.data(), out});
-      std::copy_n(moved.data(), tile.edges() * width, rows);
+      edge_hidden_backward(tile, width, hidden.data(), moved.data(), {norm.constant.data(), norm.slope.data(), rows, out});
     });
   });
   const auto [offsets, edges] = by_source(graph);

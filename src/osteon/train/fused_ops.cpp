@@ -61,17 +61,33 @@ Tensor sum_of_rows(const Tensor& x) {
   return to_tensor(sums.total());
 }
 
-// y = sum of x_i W_i^T + bias. The list holds x_1 .. x_k, W_1 .. W_k.
+// dx[index[i]] += dy[i]
+void add_to_rows(const Tensor& dy, const Tensor& index, Tensor& dx) {
+  const std::int32_t* row = index.data_ptr<std::int32_t>();
+  for (std::int64_t i = 0; i < dy.size(0); ++i)
+    column_sums(dy.data_ptr<float>() + i * dy.size(1), 1, dy.size(1), dx.data_ptr<float>() + row[i] * dy.size(1));
+}
+
+// y = start + sum of x_i W_i^T. The list holds x_1 .. x_k, W_1 .. W_k. What each row starts with: row index[i] of `start` (S,n); or `start`
+// (n) itself, where there is no index.
 struct LinearBlocks : torch::autograd::Function<LinearBlocks> {
-  static Tensor forward(AutogradContext* context, at::TensorList list, const Tensor& bias) {
+  static Tensor forward(AutogradContext* context, at::TensorList list, const Tensor& start, const Tensor& index) {
     variable_list saved;
     for (const Tensor& x : list) saved.push_back(contiguous_columns(x));
     const std::size_t parts = saved.size() / 2;
-    const std::int64_t rows = saved[0].size(0), width = bias.size(0);
-    Tensor y = bias.unsqueeze(0).expand({rows, width}).clone(at::MemoryFormat::Contiguous);  // never bias itself, also for one row
+    const std::int64_t rows = saved[0].size(0), width = start.size(-1);
+    const Tensor from = start.contiguous();
+    Tensor y = torch::empty({rows, width});
+    for_row_groups(rows, [&](int, std::int64_t first, std::int64_t last) {
+      for (std::int64_t i = first; i < last; ++i)
+        std::copy_n(from.data_ptr<float>() + (index.defined() ? index.data_ptr<std::int32_t>()[i] * width : 0), width,
+                    y.data_ptr<float>() + i * width);
+    });
     for (std::size_t i = 0; i < parts; ++i)
       parallel_gemm(rows, width, saved[i].size(1), view(saved[i]), view(saved[parts + i], Transposed::yes), 1.0f, y.data_ptr<float>());
+    saved.push_back(index);
     context->save_for_backward(std::move(saved));
+    context->saved_data["starts"] = start.dim() == 1 ? 0 : start.size(0);
     return y;
   }
 
@@ -79,8 +95,8 @@ struct LinearBlocks : torch::autograd::Function<LinearBlocks> {
     const Tensor dy = gradients[0].contiguous();
     const variable_list saved = context->get_saved_variables();
     const std::size_t parts = saved.size() / 2;
-    const std::int64_t rows = dy.size(0), width = dy.size(1);
-    variable_list out(saved.size() + 1);
+    const std::int64_t rows = dy.size(0), width = dy.size(1), starts = context->saved_data["starts"].toInt();
+    variable_list out(2 * parts + 2);
     for (std::size_t i = 0; i < parts; ++i) {
       const Tensor &x = saved[i], &w = saved[parts + i];
       const std::int64_t columns = x.size(1);
@@ -93,7 +109,9 @@ struct LinearBlocks : torch::autograd::Function<LinearBlocks> {
         parallel_gemm(width, columns, rows, view(dy, Transposed::yes), view(x), 0.0f, out[parts + i].data_ptr<float>());
       }
     }
-    out.back() = sum_of_rows(dy);
+    Tensor& d_start = out[2 * parts];
+    d_start = starts > 0 ? torch::zeros({starts, width}) : sum_of_rows(dy);
+    if (starts > 0) add_to_rows(dy, saved.back(), d_start);
     return out;
   }
 };
@@ -108,9 +126,7 @@ struct PickedRows : torch::autograd::Function<PickedRows> {
   static variable_list backward(AutogradContext* context, variable_list gradients) {
     const Tensor dy = gradients[0].contiguous(), index = context->get_saved_variables()[0];
     Tensor dx = torch::zeros({context->saved_data["rows"].toInt(), dy.size(1)});
-    const std::int32_t* row = index.data_ptr<std::int32_t>();
-    for (std::int64_t i = 0; i < dy.size(0); ++i)
-      column_sums(dy.data_ptr<float>() + i * dy.size(1), 1, dy.size(1), dx.data_ptr<float>() + row[i] * dy.size(1));
+    add_to_rows(dy, index, dx);
     return {dx, Tensor()};
   }
 };
@@ -205,10 +221,10 @@ struct EdgeLayer : torch::autograd::Function<EdgeLayer> {
 
 }  // namespace
 
-Tensor linear_blocks(const std::vector<Tensor>& inputs, const std::vector<Tensor>& weights, const Tensor& bias) {
+Tensor linear_blocks(const std::vector<Tensor>& inputs, const std::vector<Tensor>& weights, const Tensor& start, const Tensor& index) {
   std::vector<Tensor> list = inputs;
   list.insert(list.end(), weights.begin(), weights.end());
-  return LinearBlocks::apply(at::TensorList(list), bias);
+  return LinearBlocks::apply(at::TensorList(list), start, index);
 }
 
 Tensor picked_rows(const Tensor& x, const Tensor& index) { return PickedRows::apply(x, index); }
@@ -231,21 +247,22 @@ Tensor edge_layer(const Tensor& terms, const nets::Edges<TorchOps>& edges, const
 Tensor FusedOps::linear_of(const nets::Path& path, const nets::Input<FusedOps>& input, int) {
   const Tensor &weight = at(path / "weight"), &bias = at(path / "bias");
   std::vector<Tensor> inputs, weights;
-  std::vector<std::pair<Tensor, const Index*>> picked;  // products of parts of which rows are picked
+  std::vector<std::pair<Tensor, Index>> picked;  // products of parts of which rows are picked
   std::int64_t column = 0;
   for (const auto& part : input) {
     const std::int64_t columns = part.values.size(1);
     const Tensor block = weight.narrow(1, column, columns);
     column += columns;
     if (part.rows) {
-      picked.emplace_back(linear_blocks({part.values}, {block}, torch::zeros_like(bias)), part.rows);
+      picked.emplace_back(linear_blocks({part.values}, {block}, picked.empty() ? bias : torch::zeros_like(bias)), *part.rows);
     } else {
       inputs.push_back(part.values);
       weights.push_back(block);
     }
   }
-  Tensor y = linear_blocks(inputs, weights, bias);
-  for (const auto& [product, index] : picked) y = y + picked_rows(product, *index);
+  if (picked.empty()) return linear_blocks(inputs, weights, bias);
+  Tensor y = linear_blocks(inputs, weights, picked[0].first, picked[0].second);
+  for (std::size_t i = 1; i < picked.size(); ++i) y = y + picked_rows(picked[i].first, picked[i].second);
   return y;
 }
 

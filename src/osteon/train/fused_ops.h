@@ -7,7 +7,9 @@
 namespace osteon::train {
 
 // Autograd functions with hand-written gradients, CPU only. Their results do not depend on the number of threads.
-torch::Tensor linear_blocks(const std::vector<torch::Tensor>& inputs, const std::vector<torch::Tensor>& weights, const torch::Tensor& bias);
+// start + sum of inputs_i weights_i^T; start is the bias (n), or (S,n) with the row that each row starts with in `index`.
+torch::Tensor linear_blocks(const std::vector<torch::Tensor>& inputs, const std::vector<torch::Tensor>& weights, const torch::Tensor& start,
+                            const torch::Tensor& index = {});
 torch::Tensor picked_rows(const torch::Tensor& x, const torch::Tensor& index);
 torch::Tensor segment_max(const torch::Tensor& x, const torch::Tensor& offsets);
 

@@ -18,4 +18,10 @@ struct MatrixView {
 void gemm(std::int64_t m, std::int64_t n, std::int64_t k, const MatrixView& a, const MatrixView& b, float beta, float* c,
           std::int64_t c_stride);
 
+// All products so far in this process: their time, summed over threads, and how many pairs of numbers they multiplied.
+struct GemmTotals {
+  double seconds, multiplications;
+};
+GemmTotals gemm_totals();
+
 }  // namespace osteon::train

@@ -78,17 +78,19 @@ OSTEON_HOT void edge_maximum_backward(const EdgeRange& range, std::int64_t width
   }
 }
 
-OSTEON_HOT void edge_hidden_backward(const EdgeRange& range, std::int64_t width, const float* h, float* d, const EdgeHiddenGradient& out) {
+OSTEON_HOT void edge_hidden_backward(const EdgeRange& range, std::int64_t width, const float* h, const float* d,
+                                     const EdgeHiddenGradient& out) {
   const float *constant = out.constant, *slope = out.slope;
+  float* dh = out.dh;
   for (std::int64_t v = range.first; v < range.last; ++v) {
     float* receiver = out.receivers + v * 2 * width;
     for (std::int64_t c = 0; c < width; ++c) receiver[c] = 0.0f;
-    for (std::int32_t e = range.offsets[v]; e < range.offsets[v + 1]; ++e, h += width, d += width) {
+    for (std::int32_t e = range.offsets[v]; e < range.offsets[v + 1]; ++e, h += width, d += width, dh += width) {
 #pragma GCC ivdep
       for (std::int64_t c = 0; c < width; ++c) {
         const float through_norm = d[c] - constant[c] - slope[c] * h[c];
         const float passed = h[c] > 0.0f ? through_norm : 0.0f;
-        d[c] = passed;
+        dh[c] = passed;
         receiver[c] += passed;
       }
     }

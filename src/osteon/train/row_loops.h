@@ -46,13 +46,14 @@ struct EdgeMaximumGradient {
 };
 void edge_maximum_backward(const EdgeRange& range, std::int64_t width, float* r, const EdgeMaximumGradient& in);
 
-// Through normalisation and ReLU of the first edge layer. d (edges, width): in: gradient of the normalised values times the scale; out:
+// Through normalisation and ReLU of the first edge layer. d (edges, width): gradient of the normalised values times the scale; dh: gets
 // (h > 0) * (d - constant - slope * h). receivers (V, 2 width): its first half gets the sums over each receiver's edges.
 struct EdgeHiddenGradient {
   const float *constant, *slope;
+  float* dh;
   float* receivers;
 };
-void edge_hidden_backward(const EdgeRange& range, std::int64_t width, const float* h, float* d, const EdgeHiddenGradient& out);
+void edge_hidden_backward(const EdgeRange& range, std::int64_t width, const float* h, const float* d, const EdgeHiddenGradient& out);
 
 // out[v] = sum of the rows items[offsets[v]] .. items[offsets[v+1]-1] of x, for v in first .. last-1; rows of `out` are `stride` apart.
 struct RowGroups {

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include "osteon/base/error.h"
+#include "osteon/train/gemm.h"
 
 namespace osteon::train {
 namespace {
@@ -35,6 +39,34 @@ std::string task_name(Task task) {
       return "bind";
   }
   return "";
+}
+
+Model copy_of(const Model& model) {
+  Model copy;
+  for (const auto& [part, parameters] : model.parts)
+    for (const auto& [name, value] : parameters) copy[part][name] = value.detach().clone();
+  return copy;
+}
+
+void set(Model& model, const Model& values) {
+  const at::NoGradGuard no_grad;
+  for (auto& [part, parameters] : model.parts)
+    for (auto& [name, value] : parameters) value.copy_(values.parts.at(part).at(name));
+}
+
+constexpr std::string_view best_prefix = "best/";
+
+void add_arrays(Safetensors& file, const Model& model, std::string_view prefix) {
+  for (const auto& [part, parameters] : model.parts)
+    for (const auto& [name, value] : parameters) file.arrays[fmt::format("{}{}/{}", prefix, part, name)] = to_array(value);
+}
+
+// The arrays of the model's names.
+Model model_of(const Safetensors& file, const Model& names, std::string_view prefix) {
+  Model model;
+  for (const auto& [part, parameters] : names.parts)
+    for (const auto& [name, value] : parameters) model[part][name] = from_array(file.at(fmt::format("{}{}/{}", prefix, part, name)));
+  return model;
 }
 
 // Means of what is added since the last take().
@@ -108,20 +140,33 @@ NormRule Trainer::norm_rule() const {
   constexpr double from = 100.0, to = 600.0;  // steps: after these the running figures of momentum 0.01 are averages worth correcting to
   const double begun = (static_cast<double>(step_) - from) / (to - from);
   const double t = std::clamp(begun, 0.0, 1.0);
+  if (options_.trained_before) return full;
   return {std::max(full.momentum, 1.0 / static_cast<double>(step_ + 1)), 1.0 + t * (full.largest_stretch - 1.0), t * full.largest_offset};
 }
 
-std::map<std::string, double> Trainer::step(const std::vector<dataset::Example>& train, const std::vector<double>& weights) {
-  const auto start = Clock::now();
-  const dataset::Batch batch = batch_of(train, weights, static_cast<std::uint64_t>(step_));
+std::map<std::string, double> Trainer::step(BatchesAhead& batches) {
+  const Stopwatch whole;
+  const GemmTotals before = gemm_totals();
+  const dataset::Batch batch = batches.next();
+  profile_.waiting += whole.seconds();
+  const Stopwatch forward;
   TaskOptions task = options_.task;
   task.run.norm = norm_rule();
   const at::Tensor loss = training_loss(task_, model_, batch, task);
+  profile_.forward += forward.seconds();
+  const Stopwatch backward;
   loss.backward();
+  profile_.backward += backward.seconds();
+  const Stopwatch optimiser;
   const double rate = learning_rate();
   const double norm = adam_.step(model_, rate);
+  profile_.optimiser += optimiser.seconds();
+  const GemmTotals after = gemm_totals();
+  profile_.products += after.seconds - before.seconds;
+  profile_.multiplications += after.multiplications - before.multiplications;
+  ++profile_.steps;
   ++step_;
-  const double seconds = seconds_since(start);
+  const double seconds = whole.seconds();
   seconds_ += seconds;
   std::map<std::string, double> figures{
       {"loss", loss.item<double>()}, {"gradient_norm", norm}, {"learning_rate", rate}, {"seconds_per_step", seconds}};
@@ -129,25 +174,42 @@ std::map<std::string, double> Trainer::step(const std::vector<dataset::Example>&
   return figures;
 }
 
+void Trainer::keep_if_best(const std::map<std::string, double>& figures) {
+  if (!options_.keep_best || (best_ && !(figures.at("loss") < best_->figures.at("loss")))) return;
+  best_ = Best{figures, copy_of(model_)};
+}
+
 TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::vector<dataset::Example>& validation,
                          const std::function<void(const TrainReport&)>& report, const std::function<bool()>& stop) {
-  const std::vector<double> weights = dataset::sampling_weights(train);
+  const std::vector<double> weights = options_.sampling.empty() ? dataset::sampling_weights(train) : options_.sampling;
   const auto validated = [&] {
     auto figures = validate(task_, model_, validation, options_.task);
+    keep_if_best(figures);
     report({step_, seconds_, progress(), true, figures});
     return figures;
   };
+  const auto looks_due = [&] { return static_cast<int>(progress() * options_.validations); };
+  if (options_.keep_best && !best_) validated();
   Averages averages;
   Timer report_timer(options_.report_seconds), validation_timer(options_.validate_seconds), checkpoint_timer(options_.checkpoint_seconds);
+  BatchesAhead batches([&](std::uint64_t number) { return batch_of(train, weights, number); }, static_cast<std::uint64_t>(step_));
   bool stopped = false;
   while (progress() < 1.0 && !(stopped = stop())) {
-    averages.add(step(train, weights));
+    const int looks = looks_due();
+    averages.add(step(batches));
     if (report_timer.due() || progress() >= 1.0) report({step_, seconds_, progress(), false, averages.take()});
+    if (progress() < 1.0 && (looks_due() > looks || validation_timer.due())) validated();
     if (checkpoint_timer.due()) save();
-    if (progress() < 1.0 && validation_timer.due()) validated();
   }
+  profile_.making += batches.seconds_of_making();
   TrainResult result{stopped ? Ending::stopped : Ending::complete, step_, seconds_, {}};
-  if (!stopped) result.validation = validated();
+  if (!stopped) {
+    result.validation = validated();
+    if (best_) {
+      set(model_, best_->model);
+      result.validation = best_->figures;
+    }
+  }
   save();
   return result;
 }
@@ -156,8 +218,11 @@ void Trainer::save() const {
   if (options_.checkpoint.empty()) return;
   Safetensors file;
   file.metadata = {{"task", task_name(task_)}, {"step", std::to_string(step_)}, {"seconds", fmt::format("{}", seconds_)}};
-  for (const auto& [part, parameters] : model_.parts)
-    for (const auto& [name, value] : parameters) file.arrays[part + '/' + name] = to_array(value);
+  add_arrays(file, model_, "");
+  if (best_) {
+    file.metadata["best"] = nlohmann::json(best_->figures).dump();
+    add_arrays(file, best_->model, best_prefix);
+  }
   adam_.save(file);
   save_safetensors(options_.checkpoint, file);
 }
@@ -170,9 +235,9 @@ void Trainer::resume() {
                 task_name(task_));
   step_ = std::stoll(file.metadata.at("step"));
   seconds_ = std::stod(file.metadata.at("seconds"));
-  const at::NoGradGuard no_grad;
-  for (auto& [part, parameters] : model_.parts)
-    for (auto& [name, value] : parameters) value.copy_(from_array(file.at(part + '/' + name)));
+  set(model_, model_of(file, model_, ""));
+  if (const auto best = file.metadata.find("best"); options_.keep_best && best != file.metadata.end())
+    best_ = Best{nlohmann::json::parse(best->second).get<std::map<std::string, double>>(), model_of(file, model_, best_prefix)};
   adam_.load(file, options_.task.run.device);
 }
 

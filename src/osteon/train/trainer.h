@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "osteon/train/adam.h"
+#include "osteon/train/batches_ahead.h"
+#include "osteon/train/step_profile.h"
 #include "osteon/train/tasks.h"
 
 namespace osteon::train {
@@ -25,6 +27,10 @@ struct TrainOptions {
   std::uint64_t seed = 1;
   double report_seconds = 15.0;
   double validate_seconds = 300.0;  // how often to look at the validation characters; at the end always
+  int validations = 0;              // more such looks, spread evenly over the run
+  bool keep_best = false;           // ends with the weights of the look with the smallest loss; the start is one too
+  bool trained_before = false;      // the running figures of the normalisations are trusted from the first step on
+  std::vector<double> sampling;     // how often to draw each character, sum 1; empty: dataset::sampling_weights
   double checkpoint_seconds = 120.0;
   std::filesystem::path checkpoint;  // empty: none are written
 };
@@ -44,7 +50,7 @@ struct TrainResult {
   Ending ending;
   std::int64_t steps;
   double seconds;
-  std::map<std::string, double> validation;  // empty where it was stopped
+  std::map<std::string, double> validation;  // of the weights that it ends with; empty where it was stopped
 };
 
 // The state of a run. A batch depends on the seed and the number of the step alone, so a run that is stopped and resumed goes on exactly
@@ -62,13 +68,15 @@ class Trainer {
 
   Model& model() { return model_; }
   std::int64_t steps() const { return step_; }
+  const StepProfile& profile() const { return profile_; }  // of run(), since this object was made
 
  private:
   double progress() const;
   double learning_rate() const;
-  std::map<std::string, double> step(const std::vector<dataset::Example>& train, const std::vector<double>& weights);
+  std::map<std::string, double> step(BatchesAhead& batches);
   NormRule norm_rule() const;
   dataset::Batch batch_of(const std::vector<dataset::Example>& train, const std::vector<double>& weights, std::uint64_t number) const;
+  void keep_if_best(const std::map<std::string, double>& figures);
   void save() const;
 
   Task task_;
@@ -77,6 +85,12 @@ class Trainer {
   Adam adam_;
   std::int64_t step_ = 0;
   double seconds_ = 0.0;
+  struct Best {
+    std::map<std::string, double> figures;
+    Model model;
+  };
+  std::optional<Best> best_;  // so far, where the best is kept
+  StepProfile profile_;
 };
 
 }  // namespace osteon::train

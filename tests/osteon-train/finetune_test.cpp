@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/train/finetune.h"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "osteon/base/progress.h"
+#include "osteon/infer/rignet.h"
+#include "osteon/io/save.h"
+#include "osteon/synth/character.h"
+#include "support/expect.h"
+
+namespace osteon {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string content(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+struct Outcome {
+  int code;
+  std::string out, err;
+};
+
+Outcome osteon_train(const test::TemporaryFolder& folder, const std::string& arguments) {
+  const std::string command = fmt::format("cd {} && OSTEON_MODELS={} {} {} >out.txt 2>err.txt", folder.path().string(),
+                                          OSTEON_MODELS_FOLDER, OSTEON_TRAIN_PROGRAM, arguments);
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder / "out.txt"), content(folder / "err.txt")};
+}
+
+synth::CharacterOptions coarse() {
+  synth::CharacterOptions options;
+  options.cells = 40;
+  return options;
+}
+
+void save(const fs::path& path, Rig rig) {
+  io::Asset asset;
+  asset.path = path;
+  asset.mesh = std::move(rig.mesh);
+  io::save_glb(path, asset, rig.skeleton, rig.weights);
+}
+
+// Six bipeds, two of them in a folder below.
+void save_characters(const fs::path& folder) {
+  fs::create_directories(folder / "more");
+  for (std::uint64_t seed = 1; seed <= 6; ++seed)
+    save(folder / (seed > 4 ? "more" : "") / fmt::format("{}.glb", seed), synth::make_character(synth::Kind::Biped, seed, coarse()));
+}
+
+// A triangle without a skin.
+constexpr const char* kTriangle = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}],
+  "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+
+// network and figure -> before, after
+std::map<std::string, std::pair<double, double>> table_of(const std::string& text) {
+  std::map<std::string, std::pair<double, double>> table;
+  std::istringstream lines(text);
+  std::string line, network, figure;
+  std::getline(lines, line);  // the heading
+  for (double before, after; lines >> network >> figure >> before >> after;) table[network + ' ' + figure] = {before, after};
+  return table;
+}
+
+TEST(Finetune, writes_a_model_folder_and_says_what_was_gained) {
+  const test::TemporaryFolder folder;
+  save_characters(folder / "mine");
+  const Outcome run = osteon_train(folder, "finetune mine -o tuned --steps 3 --threads 1");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.err, "") << "quiet where there is no terminal";
+  EXPECT_NO_THROW(infer::RignetModels::load(folder / "tuned"));
+  EXPECT_FALSE(fs::exists(folder / "tuned" / "unfinished"));
+  const auto table = table_of(run.out);
+  for (const char* figure :
+       {"votes loss", "bind loss", "bones loss", "root loss", "votes to_joints", "bind l1", "bones precision", "root accuracy"})
+    EXPECT_TRUE(table.contains(figure)) << figure << " in\n" << run.out;
+  for (const char* network : {"votes", "bind", "bones", "root"}) {
+    const auto& [before, after] = table.at(std::string(network) + " loss");
+    EXPECT_LE(after, before) << network;
+    const auto metadata = load_safetensors(folder / "tuned" / fmt::format("{}.safetensors", network)).metadata;
+    EXPECT_THAT(metadata.at("sources"), AllOf(HasSubstr("mine"), HasSubstr("CC0"))) << "the user's and the shipped weights'";
+    EXPECT_THAT(metadata.at("recipe"), HasSubstr("finetune"));
+    EXPECT_TRUE(metadata.contains("commit"));
+  }
+}
+
+TEST(Finetune, refuses_folders_that_it_cannot_learn_from) {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder / "empty");
+  save(folder / "empty.glb", synth::make_character(synth::Kind::Biped, 1, coarse()));  // beside, not in
+  fs::create_directories(folder / "one");
+  fs::copy(folder / "empty.glb", folder / "one" / "a.glb");
+  fs::create_directories(folder / "copies");
+  for (const char* name : {"a.glb", "b.glb"}) fs::copy(folder / "empty.glb", folder / "copies" / name);
+  fs::create_directories(folder / "bare");
+  for (const char* name : {"ball.gltf", "bowl.gltf"}) std::ofstream(folder / "bare" / name) << kTriangle;
+  const auto error_of = [&](const std::string& arguments) {
+    const Outcome run = osteon_train(folder, "finetune -o tuned --steps 1 " + arguments);
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_FALSE(fs::exists(folder / "tuned")) << arguments;
+    return run.err;
+  };
+  EXPECT_THAT(error_of("missing"), AllOf(HasSubstr("missing"), HasSubstr("not a folder")));
+  EXPECT_THAT(error_of("empty"), AllOf(HasSubstr("empty"), HasSubstr("found no .glb")));
+  EXPECT_THAT(error_of("one"), HasSubstr("1 of 1 characters can be used, expected two"));
+  EXPECT_THAT(error_of("copies"), HasSubstr("copies of one another"));
+  EXPECT_THAT(error_of("bare"), AllOf(HasSubstr("ball.gltf"), HasSubstr("bowl.gltf"), HasSubstr("skin")));
+  EXPECT_THAT(error_of("one --resume"), HasSubstr("no unfinished run"));
+  EXPECT_THAT(error_of("one --init-models empty"), HasSubstr("votes.safetensors: not there"));
+}
+
+class FinetuneData : public testing::Test {
+ protected:
+  static train::FinetuneData data() {
+    static const std::vector<dataset::PreparedCharacter> characters = [] {
+      dataset::PrepareOptions options;
+      options.working_mesh.target_vertices = 300;
+      std::vector<dataset::PreparedCharacter> out;
+      for (std::uint64_t seed = 1; seed <= 6; ++seed)
+        out.push_back(
+            dataset::prepare(synth::make_character(synth::Kind::Biped, seed, coarse()), {std::to_string(seed), "", "own"}, options));
+      return out;
+    }();
+    return {{characters.begin(), characters.end() - 2}, {characters.end() - 2, characters.end()}, {}};
+  }
+  train::FinetuneOptions options(const std::string& name) const {
+    train::FinetuneOptions out;
+    out.init = fs::path(OSTEON_MODELS_FOLDER) / "rignet";
+    out.output = folder_ / name;
+    out.checkpoints = folder_ / (name + "-checkpoints");
+    out.steps = 4;
+    out.report_seconds = 0.0;
+    fs::create_directories(out.output);
+    fs::create_directories(out.checkpoints);
+    return out;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(FinetuneData, figures_are_those_of_a_fresh_validation_of_the_files) {
+  const auto results = train::finetune(
+      data(), options("a"), [](const auto&, const auto&) {}, [] { return false; });
+  ASSERT_EQ(results.size(), 4u);
+  const auto validation = dataset::examples_of(data().validation, train::parts_of(train::Task::bind));
+  const auto fresh = [&](const fs::path& folder) {
+    train::Model model;
+    model["bind"] = train::load_weights(folder / "bind.safetensors", nets::rignet::Network::bind);
+    train::TaskOptions task;
+    task.batch.parts = train::parts_of(train::Task::bind);
+    return train::validate(train::Task::bind, model, validation, task);
+  };
+  EXPECT_EQ(results[1].name, "bind");
+  EXPECT_EQ(results[1].before, fresh(options("a").init));
+  EXPECT_EQ(results[1].after, fresh(options("a").output));
+}
+
+TEST_F(FinetuneData, stopped_and_gone_on_with_gives_the_same_bytes) {
+  const auto quiet = [](const auto&, const auto&) {};
+  train::finetune(data(), options("whole"), quiet, [] { return false; });
+  for (bool finished = false; !finished;) {  // every run is stopped after three steps
+    int steps = 0;
+    try {
+      train::finetune(data(), options("parts"), quiet, [&] { return ++steps > 3; });
+      finished = true;
+    } catch (const Cancelled&) {
+    }
+  }
+  for (const char* network : {"votes", "bind", "bones", "root"}) {
+    const auto whole = load_safetensors(folder_ / "whole" / fmt::format("{}.safetensors", network)),
+               parts = load_safetensors(folder_ / "parts" / fmt::format("{}.safetensors", network));
+    for (const auto& [name, array] : whole.arrays) EXPECT_EQ(array.bytes, parts.at(name).bytes) << network << ' ' << name;
+  }
+}
+
+TEST_F(FinetuneData, general_characters_are_shown_too) {
+  auto with = data();
+  with.general = {with.own.back()};
+  with.own.pop_back();
+  std::vector<double> losses;
+  train::finetune(
+      with, options("general"), [&](const std::string&, const train::TrainReport& r) { losses.push_back(r.figures.at("loss")); },
+      [] { return false; });
+  EXPECT_GE(losses.size(), 16u);
+}
+
+}  // namespace
+}  // namespace osteon

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recipes of docs/training.md, begun: characters of the generator, all augmentation, fixed seeds.
+#include <gtest/gtest.h>
+
+#include "osteon/synth/character.h"
+#include "osteon/train/trainer.h"
+
+namespace osteon::train {
+namespace {
+
+std::vector<dataset::Example> examples(Task task) {
+  static const std::vector<dataset::PreparedCharacter> prepared = [] {
+    using synth::Kind;
+    dataset::PrepareOptions options;
+    options.working_mesh.target_vertices = 250;
+    std::vector<dataset::PreparedCharacter> characters;
+    for (const Kind kind : {Kind::Biped, Kind::Quadruped, Kind::Bird, Kind::Insect, Kind::Robot, Kind::Serpent}) {
+      const std::string name(synth::name(kind));
+      characters.push_back(dataset::prepare(synth::make_character(kind, 1, {.cells = 32}), {name, name, name}, options));
+    }
+    return characters;
+  }();
+  return dataset::examples_of(prepared, parts_of(task));
+}
+
+struct Recipe {
+  Task task;
+  double learning_rate;
+  double first_loss;  // of step 1: tells when data, augmentation, initial weights, network or loss change
+};
+
+TrainOptions options_for(const Recipe& recipe, std::int64_t steps) {
+  TrainOptions options;
+  options.task.run.norm = {.momentum = 0.01, .largest_stretch = 10.0, .largest_offset = 10.0};
+  options.task.attention_weight = 0.02;
+  options.augment.least_vertices = 150;
+  options.batch_size = 3;
+  options.learning_rate = recipe.learning_rate;
+  options.steps = steps;
+  options.report_seconds = 0.0;  // every step
+  return options;
+}
+
+std::vector<double> losses(const Recipe& recipe, std::int64_t steps) {
+  Trainer trainer(recipe.task, options_for(recipe, steps), fresh_model(recipe.task, 1));
+  std::vector<double> found;
+  const auto note = [&](const TrainReport& report) {
+    if (!report.is_validation) found.push_back(report.figures.at("loss"));
+  };
+  trainer.run(examples(recipe.task), {}, note, [] { return false; });
+  return found;
+}
+
+double mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+void PrintTo(const Recipe& recipe, std::ostream* out) { *out << "loss " << recipe.first_loss; }
+
+class RecipeOfOurs : public ::testing::TestWithParam<Recipe> {};
+
+TEST_P(RecipeOfOurs, lowers_the_loss_in_thirty_steps_of_augmented_characters) {
+  const std::vector<double> found = losses(GetParam(), 30);
+  ASSERT_EQ(found.size(), 30u);
+  EXPECT_LT(mean(std::span(found).last(5)), 0.9 * mean(std::span(found).first(5)));
+}
+
+class AnyRecipe : public ::testing::TestWithParam<Recipe> {};
+
+TEST_P(AnyRecipe, begins_with_the_loss_that_it_always_began_with) {
+  EXPECT_NEAR(losses(GetParam(), 1).front() / GetParam().first_loss, 1.0, 1e-3);
+}
+
+constexpr Recipe votes{Task::votes, 2e-3, 1.0}, bind{Task::bind, 3e-3, 1.0}, bones{Task::bones, 1e-3, 1.0}, root{Task::root, 1e-3, 1.0},
+    joints{Task::joints, 1e-3, 1.0}, attention{Task::attention, 1e-3, 1.0}, skin{Task::skin, 1e-3, 1.0};
+INSTANTIATE_TEST_SUITE_P(Training, RecipeOfOurs, ::testing::Values(votes, bind, bones, root));
+INSTANTIATE_TEST_SUITE_P(Training, AnyRecipe, ::testing::Values(votes, bind, bones, root, joints, attention, skin));
+
+}  // namespace
+}  // namespace osteon::train

@@ -127,7 +127,7 @@ class FinetuneData : public testing::Test {
   static train::FinetuneData data() {
     static const std::vector<dataset::PreparedCharacter> characters = [] {
       dataset::PrepareOptions options;
-      options.working_mesh.target_vertices = 300;
+      options.working_mesh = {300, 200, 5000};
       std::vector<dataset::PreparedCharacter> out;
       for (std::uint64_t seed = 1; seed <= 6; ++seed)
         out.push_back(

@@ -12,7 +12,7 @@ std::vector<dataset::Example> examples(Task task) {
   static const std::vector<dataset::PreparedCharacter> prepared = [] {
     using synth::Kind;
     dataset::PrepareOptions options;
-    options.working_mesh.target_vertices = 250;
+    options.working_mesh = {250, 200, 5000};
     std::vector<dataset::PreparedCharacter> characters;
     for (const Kind kind : {Kind::Biped, Kind::Quadruped, Kind::Bird, Kind::Insect, Kind::Robot, Kind::Serpent}) {
       const std::string name(synth::name(kind));

@@ -80,7 +80,7 @@ struct LinearBlocks : torch::autograd::Function<LinearBlocks> {
     Tensor y = torch::empty({rows, width});
     for_row_groups(rows, [&](int, std::int64_t first, std::int64_t last) {
       for (std::int64_t i = first; i < last; ++i)
-        std::copy_n(from.data_ptr<float>() + (index.defined() ? index.data_ptr<std::int32_t>()[i] * width : 0), width,
+        std::copy_n(from.data_ptr<float>() + (start.dim() == 2 ? index.data_ptr<std::int32_t>()[i] * width : 0), width,
                     y.data_ptr<float>() + i * width);
     });
     for (std::size_t i = 0; i < parts; ++i)
@@ -224,7 +224,7 @@ struct EdgeLayer : torch::autograd::Function<EdgeLayer> {
 Tensor linear_blocks(const std::vector<Tensor>& inputs, const std::vector<Tensor>& weights, const Tensor& start, const Tensor& index) {
   std::vector<Tensor> list = inputs;
   list.insert(list.end(), weights.begin(), weights.end());
-  return LinearBlocks::apply(at::TensorList(list), start, index);
+  return LinearBlocks::apply(at::TensorList(list), start, index.defined() ? index : torch::empty({0}, at::kInt));  // an op needs all its inputs
 }
 
 Tensor picked_rows(const Tensor& x, const Tensor& index) { return PickedRows::apply(x, index); }

@@ -38,6 +38,12 @@ TEST(VolumetricGeodesic, is_euclidean_where_the_bone_is_seen) {
   }
 }
 
+TEST(StraightDistance, is_euclidean_whatever_lies_between) {
+  const test::UTube u = test::u_tube(0.05f, 0.3f, 0.8f);
+  const Matrix d = straight_distance(u.mesh, std::span(&u.left, 1));
+  for (VertexId v : u.mesh.positions.ids()) EXPECT_NEAR(d(row(v), 0), euclidean(u.left, u.mesh.positions[v]), 1e-6f);
+}
+
 TEST(VolumetricGeodesic, goes_around_the_bend_of_a_u) {
   const test::UTube u = test::u_tube(0.05f, 0.3f, 0.8f);
   const Vec3f right_tip(0.5f * u.spread, 0.8f, 0);

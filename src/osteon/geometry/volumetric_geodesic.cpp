@@ -85,4 +85,15 @@ Matrix volumetric_geodesic_distance(const TriangleMesh& mesh, const VoxelGrid& g
   return distances;
 }
 
+Matrix straight_distance(const TriangleMesh& mesh, std::span<const Segment> bones) {
+  Matrix distances(mesh.positions.size(), bones.size());
+  for (VertexId v : mesh.positions.ids())
+    for (std::size_t b = 0; b < bones.size(); ++b) {
+      const Vec3f& p = mesh.positions[v];
+      distances(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(b)) =
+          (p - point_at(bones[b], parameter_of_nearest(bones[b], p))).norm();
+    }
+  return distances;
+}
+
 }  // namespace osteon::geometry

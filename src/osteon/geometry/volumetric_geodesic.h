@@ -13,9 +13,11 @@ namespace osteon::geometry {
 // - A vertex that sees the nearest point of the bone along a line in the body (BodyLines) gets the Euclidean distance.
 // - So do the corners of the faces nearest to the bone, by way of the nearest point: a bone outside the body has these alone.
 // - All other vertices: the shortest way from those in body_graph(mesh), which is connected, so that every distance is finite.
-// Differs from the reference, where a line that meets nothing counts as sight (leaks through holes), overlapping parts hide vertices, ways lead over
-// the surface only and pieces that float are 8 away from everything.
-// Pre: grid = voxelize(mesh); the mesh has faces.
+// Differs from the reference, where a line that meets nothing counts as sight (leaks through holes), overlapping parts hide vertices, ways
+// lead over the surface only and pieces that float are 8 away from everything. Pre: grid = voxelize(mesh); the mesh has faces.
 Matrix volumetric_geodesic_distance(const TriangleMesh& mesh, const VoxelGrid& grid, std::span<const Segment> bones);
+
+// The same in a straight line, through whatever lies between: to see what the way by the body is good for.
+Matrix straight_distance(const TriangleMesh& mesh, std::span<const Segment> bones);
 
 }  // namespace osteon::geometry

@@ -9,6 +9,7 @@
 #include "model_options.h"
 #include "osteon/io/rigtxt.h"
 #include "osteon/io/save.h"
+#include "osteon/pipelines/confidence_fit.h"
 #include "osteon/pipelines/rignet.h"
 #include "preview.h"
 #include "rig_report.h"

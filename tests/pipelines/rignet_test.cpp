@@ -109,7 +109,41 @@ TEST(RigCharacter, a_given_skeleton_is_kept_and_skinned) {
   EXPECT_EQ(result.skeleton.names, skeleton.names);
   EXPECT_EQ(result.skeleton.rest_positions, skeleton.rest_positions);
   EXPECT_LE(result.weights.max_influences(), 2u);
-  EXPECT_FALSE(result.report.joint_confidence.has_value());
+  EXPECT_TRUE(result.report.joint_confidence.empty());
+  EXPECT_EQ(result.report.confidence, result.report.coverage);
+}
+
+TEST(RigCharacter, every_joint_has_a_confidence) {
+  const RignetResult& result = rigged_figure();
+  ASSERT_EQ(result.report.joint_confidence.size(), result.skeleton.size());
+  for (std::size_t j = 0; j < result.joint_evidence.size(); ++j)
+    EXPECT_EQ(result.report.joint_confidence[j], joint_confidence(result.joint_evidence[j]));
+  EXPECT_EQ(result.report.character, character_probability(result.character_evidence));
+  EXPECT_LE(result.report.confidence, *result.report.character);
+}
+
+TEST(RigCharacter, parts_can_be_left_out_and_the_rig_is_still_valid) {
+  const TriangleMesh mesh = figure();
+  for (const Ablation& without : {Ablation{.attention = false}, Ablation{.views = false}, Ablation{.bone_network = false},
+                                  Ablation{.geodesic = false}, Ablation{.bones = 1}})
+    expect_usable(mesh, rig_character(mesh, untrained(), {.ablation = without}));
+}
+
+TEST(ConnectJoints, makes_a_tree_of_the_joints_in_their_order) {
+  const Skeleton skeleton = straight(figure());
+  const ConnectedJoints connected = connect_joints(figure(), skeleton.rest_positions.raw(), untrained());
+  EXPECT_EQ(connected.joints.size(), 3u);
+  const auto& parents = connected.tree.parents;
+  EXPECT_EQ(std::ranges::count_if(parents, [](const auto& parent) { return !parent; }), 1);
+  EXPECT_FALSE(parents[connected.tree.root].has_value());
+}
+
+TEST(ConnectJoints, without_the_network_the_nearest_joints_are_joined) {
+  const Skeleton skeleton = straight(figure());
+  const auto connected = connect_joints(figure(), skeleton.rest_positions.raw(), untrained(), {.ablation = {.bone_network = false}});
+  const auto joined = [&](std::size_t a, std::size_t b) { return connected.tree.parents[a] == b || connected.tree.parents[b] == a; };
+  EXPECT_TRUE(joined(0, 1));
+  EXPECT_TRUE(joined(1, 2));
 }
 
 TEST(RigCharacter, shapes_that_are_no_characters_get_a_valid_rig_too) {
@@ -138,6 +172,8 @@ TEST(RigCharacter, options_out_of_range_are_named) {
   EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.bandwidth = 0.5f}); }), HasSubstr("bandwidth: 0.5 found"));
   EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.detail = 2.0f}); }), HasSubstr("detail: 2 found"));
   EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.joints = 0}); }), HasSubstr("joints: 0 found"));
+  EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.ablation = {.bones = 9}}); }),
+              HasSubstr("bones of a vertex: 9 found"));
   EXPECT_THAT(test::error_of([&] { rig_character(mesh, untrained(), {.skeleton = Skeleton{}}); }), HasSubstr("no joints"));
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "osteon/base/types.h"
@@ -37,5 +38,9 @@ struct JointSet {
     return out;
   }
 };
+
+// Joints that come from elsewhere, in the frame of the networks, and are kept as they are. Partners are those that are nearest to one
+// another's mirror image, and not farther from it than `tolerance`: only nearly mirror images, and in any order.
+JointSet joint_set_of(std::span<const Vec3f> positions, const std::optional<Plane>& symmetry, float tolerance = 0.01f);
 
 }  // namespace osteon::pipelines

@@ -61,6 +61,8 @@ void check(const RignetOptions& options) {
   if (!(options.detail >= 0.0f && options.detail <= 1.0f)) throw Error("detail: {} found, expected 0 to 1", options.detail);
   if (options.joints && *options.joints < 1) throw Error("joints: 0 found, expected at least 1");
   if (options.skin.max_influences < 1) throw Error("max influences: 0 found, expected at least 1");
+  if (options.ablation.bones < 1 || options.ablation.bones > geometry::kBindBones)
+    throw Error("bones of a vertex: {} found, expected 1 to {}", options.ablation.bones, geometry::kBindBones);
   if (options.skeleton) validate(*options.skeleton);
 }
 
@@ -93,16 +95,40 @@ Matrix symmetric(const Matrix& of_pairs, std::size_t joints) {
   return out;
 }
 
-TreeEvidence evidence(const JointSet& joints, const Body& body, const infer::RignetModels& models) {
+// How likely bones are where nothing but their length counts.
+Matrix nearness(const std::vector<Vec3f>& positions) {
+  constexpr float kLength = 0.1f;  // the tree is the same for any
+  const auto n = static_cast<Eigen::Index>(positions.size());
+  Matrix out(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      out(i, j) = std::exp(-(positions[static_cast<std::size_t>(i)] - positions[static_cast<std::size_t>(j)]).norm() / kLength);
+  return out;
+}
+
+TreeEvidence evidence(const JointSet& joints, const Body& body, const infer::RignetModels& models, const Ablation& ablation) {
   const std::vector<Vec3f> positions = joints.normalised();
   const Plane plane = body.symmetry.value_or(Plane{Vec3f::UnitX(), 0.0f});
   std::vector<float> plane_distances;
   for (const Vec3f& p : positions) plane_distances.push_back(std::abs(plane.signed_distance(p)));
   const nets::JointArrays arrays = infer::single_skeleton(positions, plane_distances);
   const Matrix root = models.root_probabilities(body.graph, arrays);
-  const Matrix pairs =
-      positions.size() > 1 ? models.bone_probabilities(body.graph, arrays, geometry::pair_features(positions, body.voxels)) : Matrix(0, 1);
-  return {symmetric(pairs, positions.size()), {root.data(), root.data() + root.size()}, samples_outside(positions, body.voxels)};
+  const auto bones = [&] {
+    if (!ablation.bone_network) return nearness(positions);
+    if (positions.size() == 1) return symmetric(Matrix(0, 1), 1);
+    return symmetric(models.bone_probabilities(body.graph, arrays, geometry::pair_features(positions, body.voxels)), positions.size());
+  };
+  return {bones(), {root.data(), root.data() + root.size()}, samples_outside(positions, body.voxels)};
+}
+
+// The votes that count where a study leaves something out; the first of the views shows the character as it is.
+JointCandidates heard(JointCandidates votes, std::size_t vertices, const Ablation& ablation) {
+  if (!ablation.views) {
+    votes.positions.resize(vertices);
+    votes.attention.resize(vertices);
+  }
+  if (!ablation.attention) std::ranges::fill(votes.attention, 1.0f);
+  return votes;
 }
 
 // A valid rig for a character in which no joints were seen.
@@ -121,21 +147,39 @@ void warn_about_joints(const JointExtraction& found, const RignetOptions& option
     warnings.push_back(fmt::format("{} joints were asked for; the nearest that was found is {}", *options.joints, found.joints.size()));
 }
 
-Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RigReport& report,
+// How far the joints and the skeleton can be trusted. The joints of `result` are in the order of `from`.
+void judge(const JointCandidates& seen, const JointExtraction& found, const PerJoint<std::size_t>& from, const Body& body,
+           RignetResult& result) {
+  const std::vector<JointEvidence> evidence = joint_evidence(seen, found.joints, body.working.mesh);
+  RigReport& report = result.report;
+  for (std::size_t joint : from) {
+    result.joint_evidence.push_back(evidence[joint]);
+    report.joint_confidence.push_back(joint_confidence(evidence[joint]));
+  }
+  result.character_evidence = character_evidence(result.joint_evidence, found.explained, *report.bone_confidence);
+  report.character = character_probability(result.character_evidence);
+  const auto& joints = report.joint_confidence;
+  report.confidence = *report.character * std::accumulate(joints.begin(), joints.end(), 0.0f) / static_cast<float>(joints.size());
+}
+
+Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RignetResult& result,
                           Stages& stages) {
-  const JointCandidates seen = stages.run("joint networks", [&] { return joint_votes(body.working.mesh, body.graph, models); });
+  RigReport& report = result.report;
+  const JointCandidates seen = stages.run("joint networks", [&] {
+    return heard(joint_votes(body.working.mesh, body.graph, models), body.positions().size(), options.ablation);
+  });
   const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, body, options); });
   warn_about_joints(found, options, report.warnings);
   report.bandwidth = found.bandwidth;
   report.explained = found.explained;
-  report.joint_confidence = report.bone_confidence = 0.0f;
+  report.bone_confidence = report.character = 0.0f;
   if (found.joints.size() == 0) return single_joint(body);
-  const TreeEvidence known = stages.run("connectivity networks", [&] { return evidence(found.joints, body, models); });
+  const TreeEvidence known = stages.run("connectivity networks", [&] { return evidence(found.joints, body, models, options.ablation); });
   const JointTree tree = stages.run("tree", [&] { return connect(found.joints, known, options.tree); });
-  const auto& confidence = found.joints.confidence;
-  report.joint_confidence = std::accumulate(confidence.begin(), confidence.end(), 0.0f) / static_cast<float>(confidence.size());
   report.bone_confidence = tree.likelihood;
-  return make_skeleton(found.joints, tree, body.working.normalization).skeleton;
+  TreeSkeleton made = make_skeleton(found.joints, tree, body.working.normalization);
+  judge(seen, found, made.from, body, result);
+  return std::move(made.skeleton);
 }
 
 // The skeleton's bones in the frame of the networks.
@@ -145,9 +189,10 @@ std::vector<Bone> normalised_bones(const Skeleton& skeleton, const geometry::Nor
   return list;
 }
 
-Matrix distances_to(const std::vector<Bone>& bones, const Body& body) {
+Matrix distances_to(const std::vector<Bone>& bones, const Body& body, const Ablation& ablation) {
   std::vector<Segment> segments;
   for (const Bone& b : bones) segments.push_back(b.segment);
+  if (!ablation.geodesic) return geometry::straight_distance(body.working.mesh, segments);
   return geometry::volumetric_geodesic_distance(body.working.mesh, body.voxels, segments);
 }
 
@@ -166,7 +211,7 @@ nets::BindArrays choices_of(const Body& body, const geometry::BoneList& bones, c
 }
 
 Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const Matrix& distances, const Body& body,
-                       const infer::RignetModels& models, std::vector<std::string>& warnings) {
+                       const infer::RignetModels& models, const Ablation& ablation, std::vector<std::string>& warnings) {
   if (joints == 1) return Matrix::Ones(distances.rows(), 1);
   std::vector<Segment> segments;
   std::vector<std::uint8_t> leaf;
@@ -178,10 +223,10 @@ Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const
     ends.push_back(b.end ? static_cast<int>(*b.end) : -1);
   }
   const Matrix choice = geometry::one_bone_per_joint(distances, starts);
-  geometry::IndexMatrix nearest = geometry::nearest_bones(choice, geometry::kBindBones);
+  geometry::IndexMatrix nearest = geometry::nearest_bones(choice, ablation.bones);
   Matrix weights;
   if (models.binds()) {
-    weights = models.bind_weights(body.graph, choices_of(body, {segments, starts, ends}, nearest, choice), geometry::kBindBones);
+    weights = models.bind_weights(body.graph, choices_of(body, {segments, starts, ends}, nearest, choice), ablation.bones);
   } else {
     const geometry::SkinInputs inputs = geometry::skin_inputs(body.positions(), segments, leaf, choice);
     weights = models.skin_weights(body.graph, inputs.features, inputs.nearest);
@@ -192,7 +237,7 @@ Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const
   return skin::distance_weights(distances, bones, joints);
 }
 
-void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances, RigReport& report) {
+void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances, const RignetOptions& options, RigReport& report) {
   report.joints = skeleton.size();
   report.coverage = covered_share(distances, kReach);
   if (report.coverage < 0.9f)
@@ -202,13 +247,7 @@ void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances,
     for (const Vec3f& p : skeleton.rest_positions) points.push_back(body.working.normalization.apply(p));
     report.symmetry_error = mirror_error(points, *body.symmetry);
   }
-  double product = static_cast<double>(report.coverage), parts = 1.0;
-  for (const auto& part : {report.joint_confidence, report.explained, report.bone_confidence})
-    if (part) {
-      product *= static_cast<double>(*part);
-      parts += 1.0;
-    }
-  report.confidence = static_cast<float>(std::pow(product, 1.0 / parts));
+  if (options.skeleton) report.confidence = report.coverage;
 }
 
 }  // namespace
@@ -223,14 +262,31 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   report.vertices = mesh.positions.size();
   report.working_vertices = body.positions().size();
   report.repairs = body.working.clean.repairs;
-  result.skeleton = options.skeleton ? *options.skeleton : predict_skeleton(body, models, options, report, stages);
+  result.skeleton = options.skeleton ? *options.skeleton : predict_skeleton(body, models, options, result, stages);
   const std::vector<Bone> list = normalised_bones(result.skeleton, body.working.normalization);
-  const Matrix distances = stages.run("bone distances", [&] { return distances_to(list, body); });
-  const Matrix raw =
-      stages.run("skin network", [&] { return predict_weights(list, result.skeleton.size(), distances, body, models, report.warnings); });
+  const Matrix distances = stages.run("bone distances", [&] { return distances_to(list, body, options.ablation); });
+  const Matrix raw = stages.run("skin network", [&] {
+    return predict_weights(list, result.skeleton.size(), distances, body, models, options.ablation, report.warnings);
+  });
   result.weights = stages.run("weights", [&] { return finish_weights(raw, body.working, body.ring, options.skin); });
-  assess(body, result.skeleton, distances, report);
+  assess(body, result.skeleton, distances, options, report);
   return result;
+}
+
+ConnectedJoints connect_joints(const TriangleMesh& mesh, std::span<const Vec3f> joints, const infer::RignetModels& models,
+                               const RignetOptions& options) {
+  check(options);
+  RigReport report;
+  const Progress nobody;
+  Stages stages(report, nobody);
+  const Body body = study(mesh, options, stages);
+  std::vector<Vec3f> positions;
+  for (const Vec3f& p : joints) positions.push_back(body.working.normalization.apply(p));
+  ConnectedJoints out;
+  out.joints = joint_set_of(positions, body.symmetry);
+  out.evidence = evidence(out.joints, body, models, options.ablation);
+  out.tree = connect(out.joints, out.evidence, options.tree);
+  return out;
 }
 
 }  // namespace osteon::pipelines

@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "osteon/base/progress.h"
+#include "osteon/geometry/bind_features.h"
 #include "osteon/infer/rignet.h"
+#include "osteon/pipelines/confidence.h"
 #include "osteon/pipelines/joint_extraction.h"
 #include "osteon/pipelines/rig_report.h"
 #include "osteon/pipelines/skeleton_tree.h"
@@ -16,6 +18,15 @@ namespace osteon::pipelines {
 
 enum class Symmetry { automatic, off };
 
+// Parts of the method that can be left out, to see what each is good for (docs/results.md).
+struct Ablation {
+  bool attention = true;             // false: every vertex's vote counts alike
+  bool views = true;                 // false: the network sees the character once, as it is
+  bool bone_network = true;          // false: the nearer two joints are, the likelier a bone joins them
+  bool geodesic = true;              // false: a bone is as far from a vertex as in a straight line
+  int bones = geometry::kBindBones;  // a vertex chooses from so many at most, 1..kBindBones
+};
+
 struct RignetOptions {
   std::optional<float> bandwidth = {};     // of the mean shift, kFinestBandwidth..kCoarsestBandwidth; else by `detail`
   float detail = 0.5f;                     // 0 (few joints) .. 1 (many)
@@ -26,16 +37,16 @@ struct RignetOptions {
   JointExtractionOptions extraction = {};  // its bandwidth is not read
   TreeOptions tree = {};
   SkinPredictionOptions skin = {};  // with the number of influences
+  Ablation ablation = {};
 };
 
 struct RignetResult {
   Skeleton skeleton;    // world space of the mesh; the given one, unchanged, where one was given
   SkinWeights weights;  // one row per vertex of the mesh that was given, in its order
   RigReport report;
+  std::vector<JointEvidence> joint_evidence;  // (J) what the joints' confidence in the report follows from; empty: skeleton given
+  CharacterEvidence character_evidence = {};  // and the probability of a character
 };
-
-// Below this confidence a rig should not be used unseen.
-constexpr float kLowConfidence = 0.25f;
 
 // The whole of RigNet: Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
 // mesh -> clean working mesh -> displacement and attention -> joints -> tree -> skin -> weights on the mesh that was given.
@@ -45,5 +56,18 @@ constexpr float kLowConfidence = 0.25f;
 // Pre: validate(mesh) holds.
 RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options = {},
                            const Progress& progress = {});
+
+// Joints that are given, connected by the networks.
+struct ConnectedJoints {
+  JointSet joints;  // in the order in which they were given
+  TreeEvidence evidence;
+  JointTree tree;
+};
+
+// Only the connectivity of RigNet (sec. 4.2): `joints`, in the mesh's world coordinates, become a tree. Joints within 0.01 (longest side 1)
+// of being mirror images of one another are partners.
+// Throws Error for a mesh without surface. Pre: validate(mesh) holds; there are joints.
+ConnectedJoints connect_joints(const TriangleMesh& mesh, std::span<const Vec3f> joints, const infer::RignetModels& models,
+                               const RignetOptions& options = {});
 
 }  // namespace osteon::pipelines

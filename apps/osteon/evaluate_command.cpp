@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "calibration.h"
 #include "commands.h"
+#include "evaluation.h"
+#include "evaluation_plots.h"
+#include "gallery.h"
 #include "model_options.h"
-#include "osteon/base/parallel.h"
-#include "osteon/dataset/manifest.h"
-#include "osteon/geometry/joint_rays.h"
-#include "osteon/geometry/working_mesh.h"
 #include "osteon/metrics/score_table.h"
-#include "osteon/metrics/skeleton_metrics.h"
-#include "osteon/metrics/skin_metrics.h"
-#include "osteon/pipelines/rignet.h"
-#include "progress_line.h"
 #include "rigged_file.h"
 
 namespace osteon::app {
@@ -27,9 +24,11 @@ namespace {
 
 struct EvaluateArguments {
   std::filesystem::path predicted, reference, data, json;
+  std::filesystem::path gallery, plots, calibration;
   ModelOptions models;
   std::string split = "val", task = "all";
   pipelines::RignetOptions options;
+  std::vector<std::string> without;
 };
 
 const std::vector<metrics::ScoreColumn> kSkeletonColumns{{"iou", "IoU %", 100, 1},
@@ -45,36 +44,21 @@ const std::vector<metrics::ScoreColumn> kSkinColumns{{"precision", "precision %"
                                                      {"mean_distance", "mean distance", 1, 4},
                                                      {"max_distance", "max distance", 1, 3}};
 
+const std::vector<metrics::ScoreColumn> kConnectivityColumns{{"accuracy", "pairs right %", 100, 1},
+                                                             {"precision", "precision %", 100, 1},
+                                                             {"recall", "recall %", 100, 1},
+                                                             {"bones", "tree's bones right %", 100, 1},
+                                                             {"tree_edit_distance", "edit distance", 1, 2},
+                                                             {"likeliest_root", "likeliest root %", 100, 1},
+                                                             {"root", "tree's root %", 100, 1}};
+
 std::vector<double> values(const metrics::SkeletonScores& s) {
   return {s.iou, s.precision, s.recall, s.cd_j2j, s.cd_j2b, s.cd_b2b, s.tree_edit_distance};
 }
 std::vector<double> values(const metrics::SkinScores& s) { return {s.precision, s.recall, s.l1, s.mean_distance, s.max_distance}; }
-
-void normalise(Skeleton& skeleton, const geometry::Normalization& normalization) {
-  for (Vec3f& p : skeleton.rest_positions) p = normalization.apply(p);
+std::vector<double> values(const metrics::ConnectivityScores& s) {
+  return {s.accuracy, s.precision, s.recall, s.bones, s.tree_edit_distance, s.likeliest_root, s.root};
 }
-
-// A reference character in the frame of the measures: longest side 1.
-struct Reference {
-  Rig rig;
-  geometry::Normalization normalization;
-  PerJoint<float> tolerances;
-
-  explicit Reference(Rig loaded) : rig(std::move(loaded)), normalization(geometry::normalization_of(rig.mesh)) {
-    for (Vec3f& p : rig.mesh.positions) p = normalization.apply(p);
-    normalise(rig.skeleton, normalization);
-    std::vector<int> parents;
-    for (const auto& parent : rig.skeleton.parents) parents.push_back(parent ? static_cast<int>(*parent) : -1);
-    tolerances = PerJoint<float>(geometry::joint_tolerances(rig.mesh, rig.skeleton.rest_positions.raw(), parents));
-  }
-
-  // `predicted` is in world space of the file that the reference came from.
-  std::vector<double> skeleton_scores(Skeleton predicted) const {
-    normalise(predicted, normalization);
-    return values(metrics::compare_skeletons(predicted, rig.skeleton, tolerances));
-  }
-  std::vector<double> skin_scores(const SkinWeights& predicted) const { return values(metrics::compare_weights(rig, predicted)); }
-};
 
 // The weights of `from` in the joints of `to`, found by name; empty where one of them is missing.
 std::optional<SkinWeights> renumbered(const SkinWeights& weights, const Skeleton& from, const Skeleton& to) {
@@ -100,12 +84,12 @@ Tables compare_files(const EvaluateArguments& arguments) {
   const Rig predicted = load_rig(arguments.predicted);
   const Reference reference(load_rig(arguments.reference));
   const std::string id = arguments.predicted.stem().string();
-  Tables tables{{"skeleton", kSkeletonColumns, {{id, "file", reference.skeleton_scores(predicted.skeleton)}}, {}},
+  Tables tables{{"skeleton", kSkeletonColumns, {{id, "file", values(reference.skeleton_scores(predicted.skeleton))}}, {}},
                 {"skin", kSkinColumns, {}, {}}};
   const bool same_mesh = predicted.mesh.positions.size() == reference.rig.mesh.positions.size();
   const auto weights = same_mesh ? renumbered(predicted.weights, predicted.skeleton, reference.rig.skeleton) : std::nullopt;
   if (weights)
-    tables[1].rows.push_back({id, "file", reference.skin_scores(*weights)});
+    tables[1].rows.push_back({id, "file", values(reference.skin_scores(*weights))});
   else
     tables[1].failures.push_back(id + (same_mesh ? ": weights cannot be compared: the joints have other names"
                                                  : ": weights cannot be compared: the meshes have different vertices"));
@@ -127,54 +111,50 @@ Outcome attempt(Work&& work) {
   }
 }
 
-// The system sees the bare mesh; for the skin it also gets the reference skeleton, as in RigNet's table 2.
-std::vector<double> score_skeleton(const Rig& original, const Reference& reference, const infer::RignetModels& models,
-                                   const pipelines::RignetOptions& options) {
-  return reference.skeleton_scores(pipelines::rig_character(original.mesh, models, options).skeleton);
-}
+enum class Task { skeleton, skin, connectivity };
+constexpr std::array kTasks{"skeleton", "skin", "connectivity"};
 
-std::vector<double> score_skin(const Rig& original, const Reference& reference, const infer::RignetModels& models,
-                               pipelines::RignetOptions options) {
-  options.skeleton = original.skeleton;
-  return reference.skin_scores(pipelines::rig_character(original.mesh, models, options).weights);
-}
+bool wanted(std::size_t task, const EvaluateArguments& arguments) { return arguments.task == "all" || arguments.task == kTasks[task]; }
 
-using Outcomes = std::array<Outcome, 2>;  // skeleton, skin
-
-// One bad character does not stop the others.
-Outcomes evaluate_character(const dataset::ManifestEntry& entry, const EvaluateArguments& arguments, const infer::RignetModels& models) {
-  try {
-    const Rig rig = load_rig(entry.file);
-    const Reference reference(rig);
-    Outcomes out;
-    if (arguments.task != "skin") out[0] = attempt([&] { return score_skeleton(rig, reference, models, arguments.options); });
-    if (arguments.task != "skeleton") out[1] = attempt([&] { return score_skin(rig, reference, models, arguments.options); });
-    return out;
-  } catch (const Error& e) {
-    return {Outcome{{}, e.what()}, Outcome{{}, e.what()}};
+// For the skeleton the system sees the bare mesh; for the others it also gets the reference's skeleton, or its joints.
+std::vector<double> score(Task task, const Subject& subject, const infer::RignetModels& models, const pipelines::RignetOptions& options) {
+  switch (task) {
+    case Task::skeleton:
+      return values(subject.reference.skeleton_scores(pipelines::rig_character(subject.rig.mesh, models, options).skeleton));
+    case Task::skin:
+      return values(skin_scores(subject, models, options));
+    case Task::connectivity:
+      return values(connectivity_scores(subject.rig, models, options));
   }
+  return {};
 }
 
 Tables evaluate_split(const EvaluateArguments& arguments) {
   const auto models = arguments.models.load();
-  const auto entries = dataset::read_manifest(arguments.data, arguments.split);
-  std::vector<Outcomes> outcomes(entries.size());
-  ProgressLine progress("evaluating " + arguments.split, entries.size());
-  parallel_for(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      outcomes[i] = evaluate_character(entries[i], arguments, models);
-      progress.advance();
+  Tables tables{{"skeleton", kSkeletonColumns, {}, {}},
+                {"skin, skeleton given", kSkinColumns, {}, {}},
+                {"connectivity, joints given", kConnectivityColumns, {}, {}}};
+  struct Result {
+    dataset::CharacterInfo info;
+    std::array<Outcome, kTasks.size()> outcomes;
+  };
+  std::vector<Result> results;
+  const auto unread = for_each_character(
+      arguments.data, arguments.split, [&](std::size_t count) { results.resize(count); },
+      [&](std::size_t i, const Subject& subject) {
+        results[i].info = subject.info;
+        for (std::size_t t = 0; t < kTasks.size(); ++t)
+          if (wanted(t, arguments))
+            results[i].outcomes[t] = attempt([&] { return score(static_cast<Task>(t), subject, models, arguments.options); });
+      });
+  for (std::size_t t = 0; t < kTasks.size(); ++t) {
+    if (!wanted(t, arguments)) continue;
+    tables[t].failures = unread;
+    for (const auto& [info, outcomes] : results) {
+      if (!outcomes[t].failure.empty()) tables[t].failures.push_back(info.id + ": " + outcomes[t].failure);
+      if (!outcomes[t].values.empty()) tables[t].rows.push_back({info.id, info.category, outcomes[t].values});
     }
-  });
-
-  Tables tables{{"skeleton", kSkeletonColumns, {}, {}}, {"skin, skeleton given", kSkinColumns, {}, {}}};
-  for (std::size_t i = 0; i < entries.size(); ++i)
-    for (std::size_t t = 0; t < tables.size(); ++t) {
-      const auto& [id, group, category] = entries[i].info;
-      const Outcome& outcome = outcomes[i][t];
-      if (!outcome.failure.empty()) tables[t].failures.push_back(id + ": " + outcome.failure);
-      if (!outcome.values.empty()) tables[t].rows.push_back({id, category, outcome.values});
-    }
+  }
   std::erase_if(tables, [](const metrics::ScoreTable& table) { return table.rows.empty() && table.failures.empty(); });
   return tables;
 }
@@ -187,11 +167,63 @@ void write_json(const std::filesystem::path& path, const Tables& tables) {
   if (!file) throw Error("{}: cannot be written", path.string());
 }
 
-void evaluate(const EvaluateArguments& arguments) {
-  if (arguments.data.empty() == arguments.predicted.empty()) throw Error("evaluate needs either two files or --data");
+// What a study leaves out, by name.
+const std::map<std::string, std::function<void(pipelines::RignetOptions&)>> kParts{{"attention", [](auto& o) { o.ablation.attention = false; }},
+                                                                                   {"views", [](auto& o) { o.ablation.views = false; }},
+                                                                                   {"spread", [](auto& o) { o.extraction.spread_share = 2.0f; }},
+                                                                                   {"symmetry", [](auto& o) { o.symmetry = pipelines::Symmetry::off; }},
+                                                                                   {"bone-network", [](auto& o) { o.ablation.bone_network = false; }},
+                                                                                   {"geodesic", [](auto& o) { o.ablation.geodesic = false; }}};
+
+void measure(const EvaluateArguments& arguments) {
   const Tables tables = arguments.data.empty() ? compare_files(arguments) : evaluate_split(arguments);
   for (const metrics::ScoreTable& table : tables) fmt::print("{}\n", metrics::to_text(table));
   if (!arguments.json.empty()) write_json(arguments.json, tables);
+}
+
+void evaluate(EvaluateArguments arguments) {
+  if (arguments.data.empty() == arguments.predicted.empty()) throw Error("evaluate needs either two files or --data");
+  for (const std::string& part : arguments.without) kParts.at(part)(arguments.options);
+  const std::filesystem::path& data = arguments.data;
+  const std::string& split = arguments.split;
+  const pipelines::RignetOptions& options = arguments.options;
+  if (!arguments.gallery.empty())
+    fmt::print("{}", save_gallery(arguments.gallery, data, split, arguments.models.load(), options));
+  else if (!arguments.plots.empty())
+    save_evaluation_plots(arguments.plots, data, split, arguments.models.load());
+  else if (!arguments.calibration.empty())
+    fmt::print("{}", save_calibration(arguments.calibration, data, split, arguments.models.load(), options));
+  else
+    measure(arguments);
+}
+
+void add_pictures(CLI::App& command, EvaluateArguments& arguments, CLI::Option* data) {
+  auto* gallery =
+      command.add_option("--gallery", arguments.gallery, "Instead: draw the worst ten skeletons beside what they should be (PNG)");
+  auto* plots = command.add_option("--plots", arguments.plots, "Instead: draw how the measures follow the options, into this folder (SVG)");
+  auto* calibration = command.add_option("--calibration", arguments.calibration,
+                                         "Instead: measure the confidence, and fit it anew, into this folder (JSON, SVG, C++)");
+  gallery->type_name("FILE")->needs(data)->excludes(plots)->excludes(calibration);
+  plots->type_name("FOLDER")->check(CLI::ExistingDirectory)->needs(data)->excludes(calibration);
+  calibration->type_name("FOLDER")->check(CLI::ExistingDirectory)->needs(data);
+}
+
+// What does not matter for use, but for finding out what is good for what.
+void add_study_options(CLI::App& command, EvaluateArguments& arguments) {
+  pipelines::RignetOptions& options = arguments.options;
+  std::vector<CLI::Option*> list{
+      command.add_option("--bandwidth", options.bandwidth, "Of the mean shift: larger gives fewer joints"),
+      command.add_option("--min-share", options.extraction.min_share, "Least share of the attention that makes a joint")
+          ->capture_default_str(),
+      command.add_option("--spread-share", options.extraction.spread_share, "The same for joints whose votes are spread")
+          ->capture_default_str(),
+      command.add_option("--prune", options.skin.prune_share, "Weights below this share of a vertex's largest go")->capture_default_str(),
+      command.add_option("--max-influences", options.skin.max_influences, "Joints that may move a vertex")->capture_default_str(),
+      command.add_option("--bones", options.ablation.bones, "Nearest bones that a vertex chooses from")->capture_default_str(),
+      command.add_option("--without", arguments.without, "Leave out parts of the method, separated by commas")
+          ->delimiter(',')
+          ->check(CLI::IsMember(kParts))};
+  for (CLI::Option* option : list) option->group("Studies");
 }
 
 }  // namespace
@@ -203,20 +235,19 @@ void add_evaluate_command(CLI::App& app) {
   CLI::Option* predicted = command->add_option("predicted", arguments->predicted, "A rigged character");
   CLI::Option* reference = command->add_option("reference", arguments->reference, "The same character with the rig that it should have");
   predicted->needs(reference);
-  command->add_option("--data", arguments->data, "Folder with manifest.jsonl: rig its characters anew and compare")->excludes(predicted);
+  CLI::Option* data = command->add_option("--data", arguments->data, "Folder with manifest.jsonl: rig its characters anew and compare")
+                          ->excludes(predicted);
   command->add_option("--split", arguments->split, "Which split of the manifest")->capture_default_str();
-  command->add_option("--task", arguments->task, "What to measure")
-      ->check(CLI::IsMember({"skeleton", "skin", "all"}))
+  command
+      ->add_option("--task", arguments->task,
+                   "What to measure: the skeleton from the bare mesh, the skin for the reference's skeleton, the bones between its joints")
+      ->check(CLI::IsMember({"skeleton", "skin", "connectivity", "all"}))
       ->capture_default_str();
   arguments->models.add_to(*command);
-  pipelines::RignetOptions& options = arguments->options;
-  command->add_option("--bandwidth", options.bandwidth, "Of the mean shift: larger gives fewer joints");
-  command->add_option("--min-share", options.extraction.min_share, "Least share of the attention that makes a joint")
-      ->capture_default_str();
-  command->add_option("--spread-share", options.extraction.spread_share, "The same for joints whose votes are spread")
-      ->capture_default_str();
-  command->add_option("--prune", options.skin.prune_share, "Weights below this share of a vertex's largest go")->capture_default_str();
+  command->add_option("--detail", arguments->options.detail, "How many joints to find: 0 few .. 1 many")->capture_default_str();
   command->add_option("--json", arguments->json, "Also write the table, with every character's values, to this file");
+  add_pictures(*command, *arguments, data);
+  add_study_options(*command, *arguments);
   command->callback([arguments] { evaluate(*arguments); });
 }
 

@@ -98,8 +98,7 @@ TEST_P(FusedNetwork, gives_the_same_bytes_with_one_and_two_threads) {
   EXPECT_TRUE(at::equal(one.output, two.output));
 }
 
-INSTANTIATE_TEST_SUITE_P(Rignet, FusedNetwork,
-                         ::testing::ValuesIn(nets::rignet::kNetworks));
+INSTANTIATE_TEST_SUITE_P(Rignet, FusedNetwork, ::testing::ValuesIn(nets::rignet::kNetworks));
 
 }  // namespace
 }  // namespace osteon::train

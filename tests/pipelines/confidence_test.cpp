@@ -11,7 +11,7 @@ namespace {
 // Two joints in a box, one seen by many votes and one by few.
 struct Scene {
   TriangleMesh mesh = shapes::box({1, 1, 1});
-  JointSet joints{{}, {{0.2f, 0, 0}, {-0.2f, 0.1f, 0}}, {1.0f, 1.0f}, {std::nullopt, std::nullopt}};
+  JointSet joints{{}, {{0.2f, 0, 0}, {-0.2f, 0.1f, 0}}, {std::nullopt, std::nullopt}};
   JointCandidates votes;
 
   Scene() {

@@ -54,7 +54,6 @@ void expect_exactly_symmetric(const JointSet& joints) {
     const std::size_t partner = *joints.partner[j];
     EXPECT_EQ(*joints.partner[partner], j);
     EXPECT_EQ(joints.positions[partner], mirrored(joints.positions[j]));
-    EXPECT_EQ(joints.confidence[partner], joints.confidence[j]);
     if (partner != j) {
       EXPECT_EQ(std::max(partner, j) - std::min(partner, j), 1u);
       EXPECT_GT(joints.positions[std::min(partner, j)].x(), 0.0f);

@@ -19,7 +19,6 @@ JointSet random_joints(int middles, int pairs, int singles, Random& random) {
   const auto add = [&](const Vec3f& p, std::optional<std::size_t> partner) {
     joints.positions.push_back(p);
     joints.partner.push_back(partner);
-    joints.confidence.push_back(1.0f);
   };
   const auto place = [&](float x) { return Vec3f(x, random.uniform(), random.uniform(-0.2f, 0.2f)); };
   for (int i = 0; i < middles; ++i) add(place(0.0f), joints.size());
@@ -172,7 +171,6 @@ TEST(SkeletonTree, leaving_the_volume_costs_and_never_pays) {
   for (float x : {0.0f, 0.2f, 0.4f}) {
     joints.positions.emplace_back(x, 0, 0);
     joints.partner.push_back(std::nullopt);
-    joints.confidence.push_back(1.0f);
   }
   TreeEvidence evidence{Matrix::Constant(3, 3, 0.5f), {1, 0, 0}, Matrix::Zero(3, 3)};
   evidence.bone_probability(0, 1) = evidence.bone_probability(1, 0) = 0.01f;
@@ -223,7 +221,6 @@ Person person() {
   pair({0.45f, 0.75f, 0.02f}, hand);
   pair({0.44f, 0.74f, 0.04f}, hand);
   const auto n = static_cast<Eigen::Index>(p.joints.size());
-  p.joints.confidence.assign(p.joints.size(), 1.0f);
   p.evidence = {Matrix::Constant(n, n, 0.01f), std::vector<float>(p.joints.size(), 0.1f), Matrix::Zero(n, n)};
   p.evidence.root_probability[pelvis] = 0.9f;
   for (auto [a, b] : bones)

@@ -90,25 +90,15 @@ void prune(std::vector<Mode>& modes, float min_share) {
 }
 
 // Attention of the candidates (without their images) that gather around a place.
-struct Support {
-  double attention = 0.0, squares = 0.0;
-
-  float mean() const { return attention > 0.0 ? static_cast<float>(squares / attention) : 0.0f; }  // weighted by attention
-};
-
-Support support_at(const Vec3f& place, const std::vector<Vec3f>& shifted, const std::vector<float>& weights, float h) {
-  Support s;
-  for (std::size_t i = 0; i < shifted.size(); ++i) {
-    if ((shifted[i] - place).norm() > h) continue;
-    s.attention += static_cast<double>(weights[i]);
-    s.squares += static_cast<double>(weights[i]) * static_cast<double>(weights[i]);
-  }
-  return s;
+double attention_at(const Vec3f& place, const std::vector<Vec3f>& shifted, const std::vector<float>& weights, float h) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < shifted.size(); ++i)
+    if ((shifted[i] - place).norm() <= h) sum += static_cast<double>(weights[i]);
+  return sum;
 }
 
-void add(JointSet& joints, const Vec3f& position, const Support& support, std::optional<std::size_t> partner) {
+void add(JointSet& joints, const Vec3f& position, std::optional<std::size_t> partner) {
   joints.positions.push_back(position);
-  joints.confidence.push_back(support.mean());
   joints.partner.push_back(partner);
 }
 
@@ -123,21 +113,19 @@ bool body_near(const geometry::VoxelGrid& voxels, const MirrorFrame& frame, cons
 
 void add_mode(JointSet& joints, const Mode& mode, const Votes& votes, const std::vector<Vec3f>& shifted, const geometry::VoxelGrid& voxels,
               Mirror mirror, const JointExtractionOptions& options) {
-  const std::vector<float>& weights = votes.weights;
-  const Support here = support_at(mode.position, shifted, weights, options.bandwidth);
+  const auto attention_near = [&](const Vec3f& place) { return attention_at(place, shifted, votes.weights, options.bandwidth); };
   const std::size_t next = joints.size();
-  if (!mode.is_pair) return add(joints, mode.position, here, mirror == Mirror::off ? std::nullopt : std::optional(next));
-  const Support there = support_at(mirrored(mode.position), shifted, weights, options.bandwidth);
-  const double needed = static_cast<double>(options.one_sided_share) * std::max(here.attention, there.attention);
-  const auto missing = [&](const Support& side, const Vec3f& place) {
-    return side.attention < needed && !(votes.inside_used && body_near(voxels, joints.frame, place, 0.5f * options.bandwidth));
+  if (!mode.is_pair) return add(joints, mode.position, mirror == Mirror::off ? std::nullopt : std::optional(next));
+  const double here = attention_near(mode.position), there = attention_near(mirrored(mode.position));
+  const double needed = static_cast<double>(options.one_sided_share) * std::max(here, there);
+  const auto missing = [&](double side, const Vec3f& place) {
+    return side < needed && !(votes.inside_used && body_near(voxels, joints.frame, place, 0.5f * options.bandwidth));
   };
-  if (missing(there, mirrored(mode.position))) return add(joints, mode.position, here, std::nullopt);
-  if (missing(here, mode.position)) return add(joints, mirrored(mode.position), there, std::nullopt);
-  const Support both{here.attention + there.attention, here.squares + there.squares};
+  if (missing(there, mirrored(mode.position))) return add(joints, mode.position, std::nullopt);
+  if (missing(here, mode.position)) return add(joints, mirrored(mode.position), std::nullopt);
   const Vec3f left(std::abs(mode.position.x()), mode.position.y(), mode.position.z());
-  add(joints, left, both, next + 1);
-  add(joints, mirrored(left), both, next);
+  add(joints, left, next + 1);
+  add(joints, mirrored(left), next);
 }
 
 float explained_share(const JointSet& joints, const std::vector<Vec3f>& shifted, const std::vector<float>& weights, float h) {

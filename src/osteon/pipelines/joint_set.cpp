@@ -29,7 +29,6 @@ JointSet joint_set_of(std::span<const Vec3f> positions, const std::optional<Plan
   JointSet joints;
   if (symmetry) joints.frame = MirrorFrame::of(*symmetry);
   for (const Vec3f& p : positions) joints.positions.push_back(joints.frame.to(p));
-  joints.confidence.assign(positions.size(), 1.0f);
   joints.partner.resize(positions.size());
   for (std::size_t j = 0; symmetry && j < joints.size(); ++j) {
     const Vec3f image = mirrored(joints.positions[j]);

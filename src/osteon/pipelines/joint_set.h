@@ -28,7 +28,6 @@ inline Vec3f mirrored(const Vec3f& p) { return {-p.x(), p.y(), p.z()}; }
 struct JointSet {
   MirrorFrame frame;                                // normalised frame -> frame of the positions
   std::vector<Vec3f> positions;                     // (J) in `frame`
-  std::vector<float> confidence;                    // (J) 0..1: mean attention of the candidates that gather here, weighted by attention
   std::vector<std::optional<std::size_t>> partner;  // (J)
 
   std::size_t size() const { return positions.size(); }

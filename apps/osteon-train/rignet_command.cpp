@@ -2,6 +2,7 @@
 #include "rignet_command.h"
 
 #include <ATen/Parallel.h>
+#include <ATen/core/grad_mode.h>
 
 #include <algorithm>
 #include <iterator>
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<fs::path> data;
+  std::vector<double> shares;
   fs::path validation, out, init, attention, attention_out, log;
   std::string device = "cpu";
   int threads = 0;
@@ -38,6 +40,8 @@ void add_common_options(CLI::App& command, Arguments& a) {
   command.add_option("--data", a.data, "Training characters (safetensors of `osteon dataset prepare`; several files are put together)")
       ->required()
       ->check(CLI::ExistingFile);
+  command.add_option("--shares", a.shares, "How much of what is shown is of each file of --data (default: all files drawn from as one)")
+      ->check(CLI::NonNegativeNumber);
   command.add_option("--val", a.validation, "Validation characters")->check(CLI::ExistingFile);
   command.add_option("--out", a.out, "Where the weights go (safetensors)")->required();
   command.add_option("--init", a.init, "Weights to start from")->check(CLI::ExistingFile);
@@ -99,12 +103,30 @@ void add_combined_options(CLI::App& command, Arguments& a) {
   command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
 }
 
-std::vector<dataset::Example> examples_of(const std::vector<fs::path>& files, Task task) {
-  std::vector<dataset::PreparedCharacter> characters;
-  for (const fs::path& file : files) std::ranges::move(dataset::load_characters(file), std::back_inserter(characters));
+std::vector<dataset::Example> examples_of(const fs::path& file, Task task) {
+  std::vector<dataset::PreparedCharacter> characters = dataset::load_characters(file);
   if (task == Task::bones || task == Task::root) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
-  if (characters.empty()) throw Error("{}: no characters to learn from", files.front().string());
+  if (characters.empty()) throw Error("{}: no characters to learn from", file.string());
   return dataset::examples_of(std::move(characters), train::parts_of(task));
+}
+
+// All files' characters, and how often to draw each; no weights where no shares are given.
+struct Corpus {
+  std::vector<dataset::Example> examples;
+  std::vector<double> sampling;
+};
+
+Corpus corpus_of(const Arguments& a, Task task) {
+  if (!a.shares.empty() && a.shares.size() != a.data.size())
+    throw Error("--shares: found {} numbers for {} files of --data, expected one for each", a.shares.size(), a.data.size());
+  Corpus corpus;
+  for (std::size_t i = 0; i < a.data.size(); ++i) {
+    std::vector<dataset::Example> of_file = examples_of(a.data[i], task);
+    if (!a.shares.empty())
+      for (const double weight : dataset::sampling_weights(of_file)) corpus.sampling.push_back(a.shares[i] * weight);
+    std::ranges::move(of_file, std::back_inserter(corpus.examples));
+  }
+  return corpus;
 }
 
 train::Model starting_model(Task task, const Arguments& a) {
@@ -156,16 +178,18 @@ void run(const CLI::App& command, Task task, Arguments a) {
   if (a.combined) task = Task::collapse;
   if (a.no_augmentation) a.options.augment = dataset::AugmentOptions::none();
   a.options.task.run.device = at::Device(a.device);
-  a.options.task.run.engine = a.options.task.run.device.is_cpu() ? train::Engine::fused : train::Engine::plain;
-  const auto training = examples_of(a.data, task);
-  const auto validation = a.validation.empty() ? std::vector<dataset::Example>{} : examples_of({a.validation}, task);
+  a.options.task.run.engine = a.options.task.run.device.is_cpu() ? train::Engine::fused : train::Engine::device;
+  if (a.options.task.run.device.is_cuda()) at::globalContext().setAllowTF32CuBLAS(true);  // as exact as bf16 with f32 sums needs to be here
+  const Corpus corpus = corpus_of(a, task);
+  a.options.sampling = corpus.sampling;
+  const auto validation = a.validation.empty() ? std::vector<dataset::Example>{} : examples_of(a.validation, task);
   train::Trainer trainer(task, a.options, starting_model(task, a));
   if (a.resume) trainer.resume();
-  std::fprintf(stderr, "%s: %zu characters, %zu for validation, %llu parameters\n", command.get_name().c_str(), training.size(),
+  std::fprintf(stderr, "%s: %zu characters, %zu for validation, %llu parameters\n", command.get_name().c_str(), corpus.examples.size(),
                validation.size(), static_cast<unsigned long long>(train::count_of_trained(trainer.model())));
   TrainingLog log(a.log);
   catch_interrupts();
-  const train::TrainResult result = trainer.run(training, validation, std::ref(log), [] { return interrupted != 0; });
+  const train::TrainResult result = trainer.run(corpus.examples, validation, std::ref(log), [] { return interrupted != 0; });
   save_weights(command, a, task, trainer.model(), result);
   if (a.profile) print_profile(trainer.profile());
 }

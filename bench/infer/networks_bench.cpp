@@ -65,7 +65,7 @@ double flop_of(Network network, const NetworkInput& input) {
       nets::rignet::mask_net(b, mesh);
       break;
     case Network::votes:
-      nets::vote_net(b, mesh, b.tensor(input.vote_features, input.mesh.batch.rows(), nets::vote_features));
+      nets::vote_net(b, mesh, nets::on_backend(b, *input.votes));
       break;
     case Network::bones:
       nets::rignet::bone_net(b, mesh, joints, nets::on_backend(b, *input.pairs));
@@ -147,7 +147,7 @@ void network(benchmark::State& state, Network which) {
   test::ExampleInput input = test::one_mesh(1, 25, 1);
   input.mesh = tube(static_cast<std::uint32_t>(state.range(0)));
   input.choices = test::one_mesh(static_cast<std::size_t>(state.range(0)), 1, 2).choices;
-  input.vote_features.assign(static_cast<std::size_t>(state.range(0)) * nets::vote_features, 0.5f);
+  input.votes = test::one_mesh(static_cast<std::size_t>(state.range(0)), 1, 2).votes;
   input.skin_features.assign(static_cast<std::size_t>(state.range(0)) * nets::rignet::skin_inputs, 0.5f);
   Onednn backend(test::random_parameters(which, 1));
   run(which, backend, input.view());  // packs the weights

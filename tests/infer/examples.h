@@ -18,9 +18,7 @@ namespace osteon::test {
 
 using nets::rignet::Network;
 
-inline std::string name_of(const testing::TestParamInfo<Network>& network) {
-  return nets::rignet::name_of(network.param);
-}
+inline std::string name_of(const testing::TestParamInfo<Network>& network) { return nets::rignet::name_of(network.param); }
 
 // Weights of about the size that training starts from; normalisations of both signs, means and variances that are not 0 and 1.
 inline Safetensors random_weights(const infer::Shapes& shapes, std::uint64_t seed) {
@@ -46,14 +44,14 @@ inline infer::Parameters random_parameters(Network network, std::uint64_t seed) 
 
 // Vertices in the unit box with 3 to 8 one-ring and 0 to 12 geodesic neighbours each, joints, all pairs of them, skin features.
 struct ExampleInput : nets::NetworkInputs {
-  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features, &choices, vote_features}; }
+  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features, &choices, &votes}; }
 
   void add_mesh(std::size_t vertices, std::size_t joint_count, Random& random) {
     const std::int32_t first_vertex = mesh.batch.rows(), first_joint = joints.batch.rows();
     const auto mesh_id = static_cast<std::int32_t>(mesh.batch.offsets.size()) - 1;
     append(mesh.positions, 3 * vertices, random);
     append(skin_features, nets::rignet::skin_inputs * vertices, random);
-    append(vote_features, nets::vote_features * vertices, random);
+    add_votes(vertices, first_vertex, random);
     add_neighbours(mesh.ring, vertices, 3, 8, first_vertex, random);
     add_neighbours(mesh.geodesic, vertices, 0, 12, first_vertex, random);
     mesh.batch.add(vertices);
@@ -70,6 +68,18 @@ struct ExampleInput : nets::NetworkInputs {
         append(pairs.features, 8, random);
       }
     }
+  }
+
+  void add_votes(std::size_t vertices, std::int32_t first_vertex, Random& random) {
+    std::vector<float> features;
+    append(features, nets::vote_features * vertices, random);
+    std::vector<std::uint32_t> seeds, region_of;
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+      const bool seed = v % 5 == 0 && seeds.size() < nets::vote_regions;
+      region_of.push_back(static_cast<std::uint32_t>(seed ? seeds.size() : random.below(seeds.size())));
+      if (seed) seeds.push_back(v);
+    }
+    votes.add(features, seeds, region_of, first_vertex);
   }
 
  private:

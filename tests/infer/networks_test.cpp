@@ -54,14 +54,20 @@ TEST_P(Networks, the_same_bits_for_any_number_of_threads) {
 // The input with vertex v become vertex place[v].
 ExampleInput renumbered(const ExampleInput& input, const std::vector<std::uint32_t>& place) {
   ExampleInput out = input;
+  std::vector<float> features(input.votes.features.size());
+  std::vector<std::uint32_t> seeds, region_of(place.size());
   std::vector<std::size_t> vertex_at(place.size());
   for (std::size_t v = 0; v < place.size(); ++v) vertex_at[place[v]] = v;
   for (std::size_t v = 0; v < place.size(); ++v) {
     std::copy_n(input.mesh.positions.begin() + static_cast<std::ptrdiff_t>(3 * v), 3, out.mesh.positions.begin() + 3 * place[v]);
     std::copy_n(input.skin_features.begin() + static_cast<std::ptrdiff_t>(43 * v), 43, out.skin_features.begin() + 43 * place[v]);
-    std::copy_n(input.vote_features.begin() + static_cast<std::ptrdiff_t>(nets::vote_features * v), nets::vote_features,
-                out.vote_features.begin() + nets::vote_features * place[v]);
+    std::copy_n(input.votes.features.begin() + static_cast<std::ptrdiff_t>(nets::vote_features * v), nets::vote_features,
+                features.begin() + nets::vote_features * place[v]);
+    region_of[place[v]] = static_cast<std::uint32_t>(input.votes.region_of[v]);
   }
+  out.votes = {};
+  for (const std::int32_t seed : input.votes.seeds) seeds.push_back(place[static_cast<std::size_t>(seed)]);
+  out.votes.add(features, seeds, region_of, 0);
   auto edges = [&](const nets::EdgeArrays& before) {
     std::vector<std::uint32_t> offsets{0}, members;
     for (const std::size_t v : vertex_at) {
@@ -75,17 +81,17 @@ ExampleInput renumbered(const ExampleInput& input, const std::vector<std::uint32
   };
   out.mesh.ring = edges(input.mesh.ring);
   out.mesh.geodesic = edges(input.mesh.geodesic);
-  std::vector<float> features;
+  std::vector<float> of_choices;
   std::vector<std::int32_t> offsets{0}, bones;
   for (const std::size_t v : vertex_at) {
     const std::int32_t first = input.choices.offsets[v], last = input.choices.offsets[v + 1];
     const float* rows = input.choices.features.data();
-    features.insert(features.end(), rows + first * nets::bind_features, rows + last * nets::bind_features);
+    of_choices.insert(of_choices.end(), rows + first * nets::bind_features, rows + last * nets::bind_features);
     bones.insert(bones.end(), input.choices.bone_of.begin() + first, input.choices.bone_of.begin() + last);
     offsets.push_back(offsets.back() + last - first);
   }
   out.choices = {};
-  out.choices.add(features, offsets, bones);
+  out.choices.add(of_choices, offsets, bones);
   return out;
 }
 

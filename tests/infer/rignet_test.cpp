@@ -34,7 +34,7 @@ TEST(RignetModels, attention_and_probabilities_lie_between_0_and_1) {
   const test::ExampleInput input = test::one_mesh(120, 7, 2);
   const RignetModels paper = models_with({Network::joints, Network::attention, Network::bones, Network::root, Network::skin});
   for (const RignetModels* model : {&models(), &paper}) {
-    const JointVotes votes = model->votes(input.mesh, input.vote_features);
+    const JointVotes votes = model->votes(input.mesh, input.votes);
     EXPECT_EQ(votes.attention.rows(), 120);
     EXPECT_EQ(votes.attention.cols(), 1);
     EXPECT_GE(votes.attention.minCoeff(), 0);
@@ -90,10 +90,10 @@ TEST(RignetModels, bind_weights_sum_to_1_over_the_choices_of_a_vertex) {
 
 TEST(RignetModels, may_be_used_by_two_threads_at_once) {
   const test::ExampleInput input = test::one_mesh(100, 3, 6);
-  const Matrix expected = models().votes(input.mesh, input.vote_features).displacement;
+  const Matrix expected = models().votes(input.mesh, input.votes).displacement;
   Matrix other;
-  std::thread thread([&] { other = models().votes(input.mesh, input.vote_features).displacement; });
-  const Matrix own = models().votes(input.mesh, input.vote_features).displacement;
+  std::thread thread([&] { other = models().votes(input.mesh, input.votes).displacement; });
+  const Matrix own = models().votes(input.mesh, input.votes).displacement;
   thread.join();
   EXPECT_TRUE(test::same_bits(own, expected));
   EXPECT_TRUE(test::same_bits(other, expected));
@@ -103,8 +103,7 @@ TEST(RignetModels, every_missing_file_is_named) {
   const test::TemporaryFolder folder;
   save_safetensors(folder / "root.safetensors", {});
   const std::string error = test::error_of([&] { RignetModels::load(folder.path()); });
-  for (const char* name : {"votes", "bones", "bind"})
-    EXPECT_THAT(error, HasSubstr((folder / name).string() + ".safetensors"));
+  for (const char* name : {"votes", "bones", "bind"}) EXPECT_THAT(error, HasSubstr((folder / name).string() + ".safetensors"));
   EXPECT_THAT(error, testing::Not(HasSubstr("root.safetensors")));
 }
 

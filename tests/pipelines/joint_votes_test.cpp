@@ -17,9 +17,11 @@ TEST(JointVotes, of_a_silent_network_are_the_middles_of_the_body_in_all_views) {
   const infer::RignetModels silent =
       test::untrained_models({Network::votes, Network::bones, Network::root, Network::bind}, test::LastLayer::zero);
   const TriangleMesh mesh = geometry::make_working_mesh(shapes::capsule(0.2f, 1.0f)).mesh;
-  const geometry::Neighbourhoods ring = geometry::one_ring(mesh), near = geometry::evenly(geometry::geodesic_balls(mesh), 10);
-  const JointCandidates votes = joint_votes(
-      mesh, infer::single_mesh(mesh.positions.raw(), {ring.offsets, ring.members}, {near.offsets, near.members}), silent, 20.0f);
+  const geometry::GeodesicBalls balls = geometry::geodesic_balls(mesh);
+  const geometry::Neighbourhoods ring = geometry::one_ring(mesh), near = geometry::evenly(balls, 10);
+  const JointCandidates votes =
+      joint_votes(mesh, infer::single_mesh(mesh.positions.raw(), {ring.offsets, ring.members}, {near.offsets, near.members}),
+                  geometry::regions(mesh, balls, nets::vote_regions, 0), silent, 20.0f);
   const geometry::VoteFeatures features = geometry::vote_features(mesh);
   const std::size_t count = mesh.positions.size();
   ASSERT_EQ(votes.positions.size(), 4 * count);

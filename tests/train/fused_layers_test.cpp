@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "osteon/nets/dry_run.h"
+#include "osteon/train/device_ops.h"
 #include "osteon/train/fused_ops.h"
 #include "synthetic.h"
 
@@ -55,6 +56,15 @@ TEST(FusedLayers, mlp_over_parts_is_that_of_plain_operations) {
     const auto global = b.max_by(x, mesh.batch.offsets);
     return nets::mlp<B>(b, nets::Path("layer"), {{global, mesh.batch.mesh_of}, mesh.positions, x}, {20, 9});
   });
+}
+
+// Two rows share the first segment's largest value, three the second's; the gradients have both signs.
+TEST(SharedSegmentMax, splits_the_gradient_among_equals) {
+  at::Tensor x = at::tensor({1.0f, 4.0f, 4.0f, 7.0f, 7.0f, 7.0f}).view({6, 1}).set_requires_grad(true);
+  const at::Tensor best = shared_segment_max(x, at::tensor({0, 3, 6}, at::kInt));
+  (best * at::tensor({-2.0f, 3.0f}).view({2, 1})).sum().backward();
+  EXPECT_TRUE(at::equal(best, at::tensor({4.0f, 7.0f}).view({2, 1})));
+  EXPECT_TRUE(at::equal(x.grad(), at::tensor({0.0f, -1.0f, -1.0f, 1.0f, 1.0f, 1.0f}).view({6, 1})));
 }
 
 }  // namespace

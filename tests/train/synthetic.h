@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <vector>
 
@@ -12,7 +13,12 @@ namespace osteon::train::test {
 
 // What the voting and the binding network read.
 inline void add_features(NetworkInputs& inputs, int vertices, Random random) {
-  for (int i = 0; i < vertices * nets::vote_features; ++i) inputs.vote_features.push_back(random.uniform(-1.0f, 1.0f));
+  std::vector<float> of_votes;
+  for (int i = 0; i < vertices * nets::vote_features; ++i) of_votes.push_back(random.uniform(-1.0f, 1.0f));
+  const std::vector<std::uint32_t> seeds{0, 2, 1};
+  std::vector<std::uint32_t> region_of;
+  for (int v = 0; v < vertices; ++v) region_of.push_back(v < 3 ? std::array{0u, 2u, 1u}[v] : static_cast<std::uint32_t>(random.below(3)));
+  inputs.votes.add(of_votes, seeds, region_of, static_cast<std::int32_t>(inputs.votes.region_of.size()));
   std::vector<std::int32_t> choice_offsets{0};
   for (int v = 0; v < vertices; ++v) choice_offsets.push_back(choice_offsets.back() + 1 + v % 4);
   std::vector<float> features;

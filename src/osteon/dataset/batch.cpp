@@ -9,6 +9,7 @@
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/fold.h"
 #include "osteon/geometry/decimate.h"
+#include "osteon/geometry/regions.h"
 #include "osteon/geometry/symmetry.h"
 
 namespace osteon::dataset {
@@ -102,8 +103,8 @@ void add_joints(Batch& batch, const Example& example, const Placement& placement
   batch.targets.attention.insert(batch.targets.attention.end(), attention.begin(), attention.end());
 }
 
-// `joints`: how many the network is told that there are.
-void add_vote_features(Batch& batch, const Example& example, const Placement& placement, float joints) {
+// Of the mesh that was added last. `joints`: how many the network is told that there are.
+void add_votes(Batch& batch, const Example& example, const Placement& placement, const geometry::Regions& regions, float joints) {
   geometry::VoteFeatures placed = example.vote_features;
   const Eigen::Matrix3f of_normals = placement.linear.inverse().transpose();
   for (Vec3f& n : placed.normals) n = (of_normals * n).normalized();
@@ -111,8 +112,8 @@ void add_vote_features(Batch& batch, const Example& example, const Placement& pl
   for (float& thickness : placed.thicknesses) thickness *= placement.length_scale;
   std::vector<Vec3f> positions;
   for (const Vec3f& p : example.character.mesh.positions) positions.push_back(placement.apply(p));
-  const std::vector<float> rows = geometry::vote_rows(positions, placed, joints);
-  batch.inputs.vote_features.insert(batch.inputs.vote_features.end(), rows.begin(), rows.end());
+  const auto& starts = batch.inputs.mesh.batch.offsets;
+  batch.inputs.votes.add(geometry::vote_rows(positions, placed, joints), regions.seeds, regions.region_of, starts[starts.size() - 2]);
 }
 
 // A pair of joints of one example, by their rows there; `row` is that of its features.
@@ -233,9 +234,11 @@ Batch training_batch(std::span<const Example* const> examples, const BatchOption
     const Placement placement = random_placement(character.mesh.positions.raw(), augment, random);
     add_mesh(batch.inputs.mesh, character, placement, geometry::drawn(character.balls, options.neighbours, random));
     add_joints(batch, example, placement);
-    if (options.parts == Parts::joints)
-      add_vote_features(batch, example, placement,
-                        static_cast<float>(character.joints()) * std::exp(augment.joint_count_blur * random.normal()));
+    if (options.parts == Parts::joints) {
+      const float joints = static_cast<float>(character.joints()) * std::exp(augment.joint_count_blur * random.normal());
+      const auto first = static_cast<std::uint32_t>(random.below(character.vertices()));
+      add_votes(batch, example, placement, geometry::regions(character.mesh, character.balls, nets::vote_regions, first), joints);
+    }
     if (options.parts == Parts::skin) add_skin(batch, example, placement);
     if (options.parts == Parts::bind) add_choices(batch, example, placement);
     if (options.parts != Parts::pairs) continue;
@@ -253,7 +256,11 @@ Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& 
     const PreparedCharacter& character = example->character;
     add_mesh(batch.inputs.mesh, character, {}, geometry::evenly(character.balls, options.neighbours));
     add_joints(batch, *example, {});
-    if (options.parts == Parts::joints) add_vote_features(batch, *example, {}, static_cast<float>(character.joints()));
+    if (options.parts == Parts::joints) {
+      const std::uint32_t first = geometry::outermost_vertex(character.mesh);
+      add_votes(batch, *example, {}, geometry::regions(character.mesh, character.balls, nets::vote_regions, first),
+                static_cast<float>(character.joints()));
+    }
     if (options.parts == Parts::skin) add_skin(batch, *example, {});
     if (options.parts == Parts::bind) add_choices(batch, *example, {});
     if (options.parts != Parts::pairs) continue;

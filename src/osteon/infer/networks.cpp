@@ -25,7 +25,7 @@ typename Backend::Tensor output(Network network, Backend& b, const NetworkInput&
     case Network::attention:
       return rignet::mask_net(b, mesh);
     case Network::votes:
-      return nets::vote_net(b, mesh, b.tensor(input.vote_features, input.mesh.batch.rows(), nets::vote_features));
+      return nets::vote_net(b, mesh, on_backend(b, *input.votes));
     case Network::bones:
       return rignet::bone_net(b, mesh, on_backend(b, *input.joints), on_backend(b, *input.pairs));
     case Network::root:

@@ -16,7 +16,7 @@ struct NetworkInput {
   const nets::PairArrays* pairs = nullptr;    // bones
   std::span<const float> skin_features = {};  // skin: (V,43)
   const nets::BindArrays* choices = nullptr;  // bind
-  std::span<const float> vote_features = {};  // votes: (V,26)
+  const nets::VoteArrays* votes = nullptr;
 };
 
 // The network's output as in nets/rignet.h (logits). Backend: Loops or Onednn; instantiated in networks.cpp.

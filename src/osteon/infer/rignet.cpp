@@ -56,8 +56,10 @@ void pack_weights(Network network, Onednn& backend) {
   const nets::PairArrays pairs{{0}, {0}, std::vector<float>(8), {0}};
   const std::vector<float> features(nets::rignet::skin_inputs);
   const nets::BindArrays choices{std::vector<float>(nets::bind_features), {0, 1}, {0}, {0}, {0, 1}, {0}};
-  const std::vector<float> of_votes(nets::vote_features);
-  run(network, backend, {mesh, &joints, &pairs, features, &choices, of_votes});
+  nets::VoteArrays of_votes;
+  const std::uint32_t one[] = {0};
+  of_votes.add(std::vector<float>(nets::vote_features), one, one, 0);
+  run(network, backend, {mesh, &joints, &pairs, features, &choices, &of_votes});
 }
 
 void add_edges(nets::EdgeArrays& edges, NeighbourView neighbours) { edges.add(neighbours.offsets, neighbours.members, 0); }
@@ -150,12 +152,12 @@ RignetModels::~RignetModels() = default;
 RignetModels::RignetModels(RignetModels&&) noexcept = default;
 RignetModels& RignetModels::operator=(RignetModels&&) noexcept = default;
 
-JointVotes RignetModels::votes(const nets::MeshArrays& mesh, std::span<const float> vote_features) const {
+JointVotes RignetModels::votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs) const {
   const auto output = [&](Network network) { return run(network, (*networks_)[network], {mesh}); };
   if (!networks_->has(Network::votes)) return {output(Network::joints), sigmoid(output(Network::attention))};
-  const Matrix both = run(Network::votes, (*networks_)[Network::votes], {.mesh = mesh, .vote_features = vote_features});
-  const Eigen::Map<const Matrix> features(vote_features.data(), both.rows(), nets::vote_features);
-  return {features.middleCols(3, 3) + both.leftCols(3), sigmoid(both.rightCols(1))};
+  const Matrix both = run(Network::votes, (*networks_)[Network::votes], {.mesh = mesh, .votes = &vote_inputs});
+  const Eigen::Map<const Matrix> features(vote_inputs.features.data(), both.rows(), nets::vote_features);
+  return {features.middleCols(nets::vote_to_middle, 3) + nets::vote_unit * both.leftCols(3), sigmoid(both.rightCols(1))};
 }
 
 Matrix RignetModels::bone_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints, const Matrix& pair_features) const {

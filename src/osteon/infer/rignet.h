@@ -42,7 +42,7 @@ class RignetModels {
   RignetModels(RignetModels&&) noexcept;
   RignetModels& operator=(RignetModels&&) noexcept;
 
-  JointVotes votes(const nets::MeshArrays& mesh, std::span<const float> vote_features) const;  // features (V,26) of nets/voting.h
+  JointVotes votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs) const;
 
   // (P,1) how likely a bone joins the two joints of each pair (i, j), i < j, in the order (0,1), (0,2), ..., (1,2), ... : the mean over
   // both orders of the two. pair_features: (P,8) first joint, second joint, their distance, share of the way that is inside the shape.
@@ -53,7 +53,8 @@ class RignetModels {
   // Whether weights come from the binding network: then bind_weights() may be asked, else skin_weights().
   bool binds() const;
 
-  // (V,k) how much each vertex follows each of its bones, in the order of its rows in `choices`, 0 where there are fewer than k; rows sum to
+  // (V,k) how much each vertex follows each of its bones, in the order of its rows in `choices`, 0 where there are fewer than k; rows sum
+  // to
   // 1. Pre: every vertex has 1 to k bones.
   Matrix bind_weights(const nets::MeshArrays& mesh, const nets::BindArrays& choices, int k) const;
 

@@ -19,8 +19,7 @@ typename B::Tensor bind_net(B& b, const MeshGraph<B>& mesh, const BindChoices<B>
   const auto x1 = rignet::gcu(b, Path("gcu1"), vertex, mesh, 128);
   const auto x2 = rignet::gcu(b, Path("gcu2"), x1, mesh, 128);
   const auto of_vertex = mlp<B>(b, Path("vertex"), {vertex, x1, x2}, {128});
-  const auto head =
-      mlp<B>(b, Path("head"), {pair, choices.features, {bone, choices.bone_of}, {of_vertex, choices.vertex_of}}, {128, 128});
+  const auto head = mlp<B>(b, Path("head"), {pair, choices.features, {bone, choices.bone_of}, {of_vertex, choices.vertex_of}}, {128, 128});
   return b.linear(Path("out"), head, 1);
 }
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "osteon/nets/graph.h"
 #include "osteon/nets/binding.h"
+#include "osteon/nets/graph.h"
 #include "osteon/nets/rignet.h"
 #include "osteon/nets/voting.h"
 
@@ -82,7 +82,7 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
       mask_net(b, mesh);
       break;
     case Network::votes:
-      vote_net(b, mesh, {vote_features});
+      vote_net(b, mesh, {{vote_features}, {}, {}, {}, {}, {}});
       break;
     case Network::bones:
       bone_net(b, mesh, joints, {{}, {}, {8}, {}});

@@ -74,12 +74,12 @@ struct PairArrays {
 
 // The bones that each vertex may follow: a row for each vertex and bone (geometry/bind_features.h).
 struct BindArrays {
-  std::vector<float> features;           // (C,bind_features)
-  std::vector<std::int32_t> offsets{0};  // (V+1) rows of vertex v are offsets[v] .. offsets[v+1]-1
-  std::vector<std::int32_t> vertex_of;   // (C)
-  std::vector<std::int32_t> by_bone;     // (C) the rows again, in the order of their bones
+  std::vector<float> features;                // (C,bind_features)
+  std::vector<std::int32_t> offsets{0};       // (V+1) rows of vertex v are offsets[v] .. offsets[v+1]-1
+  std::vector<std::int32_t> vertex_of;        // (C)
+  std::vector<std::int32_t> by_bone;          // (C) the rows again, in the order of their bones
   std::vector<std::int32_t> bone_offsets{0};  // (B+1) those of bone b are by_bone[bone_offsets[b] .. bone_offsets[b+1]-1]; none is without
-  std::vector<std::int32_t> bone_of;     // (C) which of the B
+  std::vector<std::int32_t> bone_of;          // (C) which of the B
 
   // The rows of the next mesh's vertices, numbered from 0 within it, and which of its bones each is about.
   void add(std::span<const float> mesh_features, std::span<const std::int32_t> mesh_offsets, std::span<const std::int32_t> mesh_bones) {
@@ -105,13 +105,44 @@ struct BindArrays {
 };
 constexpr int bind_features = 21;  // of a vertex and a bone
 
+// What the voting network reads beside the mesh: features of the vertices (geometry/vote_features.h), and the surface cut into regions
+// (geometry/regions.h), each of which sees all others of its mesh.
+constexpr int vote_features = 26;
+constexpr int vote_regions = 64;  // of a mesh, or as many as it has vertices
+struct VoteArrays {
+  std::vector<float> features;           // (V,vote_features)
+  std::vector<std::int32_t> seeds;       // (R) the vertex in the middle of each region
+  std::vector<std::int32_t> members;     // (V) vertices in the order of their regions
+  std::vector<std::int32_t> offsets{0};  // (R+1) those of region r are members[offsets[r] .. offsets[r+1]-1]; none is without
+  std::vector<std::int32_t> region_of;   // (V)
+  EdgeArrays pairs;                      // of regions of one mesh: add_complete
+
+  // The next mesh, whose first vertex is `first`; its seeds and regions are numbered from 0 within it.
+  void add(std::span<const float> mesh_features, std::span<const std::uint32_t> mesh_seeds, std::span<const std::uint32_t> mesh_region_of,
+           std::int32_t first) {
+    features.insert(features.end(), mesh_features.begin(), mesh_features.end());
+    const auto first_region = static_cast<std::int32_t>(seeds.size());
+    for (const std::uint32_t seed : mesh_seeds) seeds.push_back(first + static_cast<std::int32_t>(seed));
+    for (const std::uint32_t region : mesh_region_of) region_of.push_back(first_region + static_cast<std::int32_t>(region));
+    const std::size_t before = members.size();
+    members.resize(region_of.size());
+    const std::span own = std::span(members).subspan(before);
+    std::iota(own.begin(), own.end(), first);
+    std::ranges::stable_sort(own, {}, [&](std::int32_t v) { return region_of[static_cast<std::size_t>(v)]; });
+    std::vector<std::int32_t> sizes(mesh_seeds.size(), 0);
+    for (const std::uint32_t region : mesh_region_of) ++sizes[region];
+    for (const std::int32_t size : sizes) offsets.push_back(offsets.back() + size);
+    pairs.add_complete(static_cast<std::int32_t>(mesh_seeds.size()), first_region);
+  }
+};
+
 // The inputs of all networks; what a network does not use may be empty.
 struct NetworkInputs {
   MeshArrays mesh;
   JointArrays joints;
   PairArrays pairs;
   std::vector<float> skin_features;  // (V,43)
-  std::vector<float> vote_features;  // (V,26)
+  VoteArrays votes;
   BindArrays choices;
 };
 
@@ -151,6 +182,13 @@ struct BindChoices {
   typename B::Index by_bone, bone_offsets, bone_of;
 };
 
+template <class B>
+struct Votes {
+  typename B::Tensor features;  // (V,vote_features)
+  typename B::Index seeds, members, offsets, region_of;
+  Edges<B> pairs;
+};
+
 template <Ops B>
 Edges<B> on_backend(B& b, const EdgeArrays& edges) {
   return {b.index(edges.offsets), b.index(edges.sources), b.index(edges.receivers)};
@@ -182,8 +220,23 @@ JointPairs<B> on_backend(B& b, const PairArrays& pairs) {
 
 template <Ops B>
 BindChoices<B> on_backend(B& b, const BindArrays& choices) {
-  return {b.tensor(choices.features, static_cast<int>(choices.vertex_of.size()), bind_features), b.index(choices.offsets),
-          b.index(choices.vertex_of), b.index(choices.by_bone), b.index(choices.bone_offsets), b.index(choices.bone_of)};
+  return {b.tensor(choices.features, static_cast<int>(choices.vertex_of.size()), bind_features),
+          b.index(choices.offsets),
+          b.index(choices.vertex_of),
+          b.index(choices.by_bone),
+          b.index(choices.bone_offsets),
+          b.index(choices.bone_of)};
+}
+
+template <Ops B>
+Votes<B> on_backend(B& b, const VoteArrays& votes) {
+  const auto vertices = static_cast<int>(votes.region_of.size());
+  return {b.tensor(votes.features, vertices, static_cast<int>(votes.features.size()) / std::max(1, vertices)),
+          b.index(votes.seeds),
+          b.index(votes.members),
+          b.index(votes.offsets),
+          b.index(votes.region_of),
+          on_backend(b, votes.pairs)};
 }
 
 }  // namespace osteon::nets

@@ -39,7 +39,8 @@ float expected_joints(std::size_t triangles, float detail) {
   return kJointsAtThousand * std::pow(size / 1000.0f, kJointsExponent) * std::pow(16.0f, detail - 0.5f);
 }
 
-JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const infer::RignetModels& models, float joints) {
+JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const geometry::Regions& regions,
+                            const infer::RignetModels& models, float joints) {
   const geometry::VoteFeatures features = geometry::vote_features(mesh);
   JointCandidates out;
   for (const Eigen::Matrix3f& view : views()) {
@@ -52,8 +53,9 @@ JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& gr
       p = frame.apply(p);
       arrays.positions.insert(arrays.positions.end(), p.begin(), p.end());
     }
-    const infer::JointVotes votes =
-        models.votes(arrays, geometry::vote_rows(shown.positions.raw(), seen(features, view, frame.scale), joints));
+    nets::VoteArrays inputs;
+    inputs.add(geometry::vote_rows(shown.positions.raw(), seen(features, view, frame.scale), joints), regions.seeds, regions.region_of, 0);
+    const infer::JointVotes votes = models.votes(arrays, inputs);
     const Eigen::Matrix3f back = view.inverse();
     for (Eigen::Index v = 0; v < votes.attention.rows(); ++v) {
       const Vec3f q = shown.positions.raw()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "osteon/geometry/regions.h"
 #include "osteon/infer/rignet.h"
 #include "osteon/mesh/triangle_mesh.h"
 #include "osteon/pipelines/joint_extraction.h"
@@ -13,8 +14,9 @@ float expected_joints(std::size_t triangles, float detail);
 
 // Where the vertices of a working mesh see joints, in its frame. The network is shown the character several times: as it is, mirrored, and
 // both from behind, turned and stretched a little; all answers are heard together, so that one chance error counts less, and so that nobody
-// has to know the front: (4V) candidates, V for each view. `joints`: how many the rig shall have, roughly. `graph` is that of `mesh`.
-// Pre: `mesh` is normalised.
-JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const infer::RignetModels& models, float joints);
+// has to know the front: (4V) candidates, V for each view. `joints`: how many the rig shall have, roughly. `graph` and `regions` are those
+// of `mesh`. Pre: `mesh` is normalised.
+JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const geometry::Regions& regions,
+                            const infer::RignetModels& models, float joints);
 
 }  // namespace osteon::pipelines

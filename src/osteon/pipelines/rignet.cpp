@@ -52,6 +52,7 @@ struct Body {
   geometry::WorkingMesh working;
   geometry::Neighbourhoods ring;
   nets::MeshArrays graph;
+  geometry::Regions regions;  // of the surface, for the votes
   geometry::VoxelGrid voxels;
   std::optional<Plane> symmetry;
   std::optional<geometry::MirrorPairs> pairs;  // of working.clean.mesh
@@ -105,8 +106,10 @@ Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stage
   }
   const TriangleMesh& working = body.working.mesh;
   body.ring = geometry::one_ring(working);
-  const auto geodesic =
-      stages.run("neighbourhoods", [&] { return geometry::evenly(geometry::geodesic_balls(working), kGeodesicNeighbours); });
+  const auto balls = stages.run("neighbourhoods", [&] { return geometry::geodesic_balls(working); });
+  const auto geodesic = geometry::evenly(balls, kGeodesicNeighbours);
+  body.regions =
+      stages.run("regions", [&] { return geometry::regions(working, balls, nets::vote_regions, geometry::outermost_vertex(working)); });
   body.graph = infer::single_mesh(body.positions(), {body.ring.offsets, body.ring.members}, {geodesic.offsets, geodesic.members});
   body.voxels = stages.run("voxels", [&] { return geometry::voxelize(working); });
   return body;
@@ -203,7 +206,7 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
   RigReport& report = result.report;
   const float wanted = options.joints ? static_cast<float>(*options.joints) : expected_joints(body.triangles, options.detail);
   const JointCandidates seen = stages.run("joint networks", [&] {
-    return heard(joint_votes(body.working.mesh, body.graph, models, wanted), body.positions().size(), options.ablation);
+    return heard(joint_votes(body.working.mesh, body.graph, body.regions, models, wanted), body.positions().size(), options.ablation);
   });
   const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, wanted, body, options); });
   warn_about_joints(found, options, report.warnings);

@@ -5,6 +5,7 @@
 #include <dnnl.h>
 #else
 #include <ATen/ATen.h>
+#include <ATen/core/grad_mode.h>
 #endif
 
 #include <atomic>

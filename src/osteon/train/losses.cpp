@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/train/losses.h"
 
+#include <ATen/core/grad_mode.h>
 #include <torch/types.h>
 
 #include <algorithm>

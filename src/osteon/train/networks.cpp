@@ -4,6 +4,7 @@
 #include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
 #include "osteon/nets/voting.h"
+#include "osteon/train/device_ops.h"
 #include "osteon/train/fused_ops.h"
 #include "osteon/train/torch_ops.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 using nets::rignet::Network;
 
-static_assert(nets::Ops<TorchOps> && nets::Ops<FusedOps>);
+static_assert(nets::Ops<TorchOps> && nets::Ops<FusedOps> && nets::Ops<DeviceOps>);
 
 template <nets::Ops B>
 at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
@@ -23,7 +24,7 @@ at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
     case Network::attention:
       return nets::rignet::mask_net(b, mesh);
     case Network::votes:
-      return nets::vote_net(b, mesh, b.tensor(inputs.vote_features, inputs.mesh.batch.rows(), nets::vote_features));
+      return nets::vote_net(b, mesh, nets::on_backend(b, inputs.votes));
     case Network::bones:
       return nets::rignet::bone_net(b, mesh, nets::on_backend(b, inputs.joints), nets::on_backend(b, inputs.pairs));
     case Network::root:
@@ -41,6 +42,10 @@ at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
 at::Tensor run_network(Network network, Parameters& parameters, const NetworkInputs& inputs, const RunOptions& options) {
   if (options.engine == Engine::fused) {
     FusedOps ops(parameters, options.mode, options.norm);
+    return run(ops, network, inputs);
+  }
+  if (options.engine == Engine::device) {
+    DeviceOps ops(parameters, options.mode, options.device, options.norm);
     return run(ops, network, inputs);
   }
   TorchOps ops(parameters, options.mode, options.device, options.norm);

@@ -12,7 +12,8 @@
 namespace osteon::train {
 
 enum class Mode { training, use };   // normalise with the figures of the batch, and keep the running ones up to date; or with these
-enum class Engine { plain, fused };  // LibTorch operations on any device; or hand-written layers for the CPU: the same function
+// The same function three ways: LibTorch operations on any device; hand-written layers for the CPU; few passes over memory, for a GPU.
+enum class Engine { plain, fused, device };
 
 using nets::NetworkInputs;
 

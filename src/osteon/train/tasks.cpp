@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/train/tasks.h"
 
+#include <ATen/core/grad_mode.h>
 #include <torch/types.h>
 
 #include "osteon/base/error.h"
@@ -71,8 +72,8 @@ Candidates candidates(Task task, Model& model, const dataset::Batch& batch, cons
   Tensor displacement = run(network_of(task), model, batch, options), attention;
   if (task == Task::votes) {
     attention = displacement.narrow(1, 3, 1);
-    const Tensor to_middle = tensor_of(batch.inputs.vote_features, nets::vote_features, options.device).narrow(1, nets::vote_to_middle, 3);
-    displacement = to_middle + displacement.narrow(1, 0, 3);
+    const Tensor to_middle = tensor_of(batch.inputs.votes.features, nets::vote_features, options.device).narrow(1, nets::vote_to_middle, 3);
+    displacement = to_middle + nets::vote_unit * displacement.narrow(1, 0, 3);
   }
   if (task == Task::collapse) attention = run(Network::attention, model, batch, options);
   return {tensor_of(batch.inputs.mesh.positions, 3, options.device) + displacement, attention,

@@ -15,7 +15,7 @@
 
 namespace osteon::train {
 
-// nets::Ops by plain LibTorch operations, on any device: the reference for FusedOps, and what runs on a GPU.
+// nets::Ops by plain LibTorch operations, on any device: the reference for FusedOps and DeviceOps.
 class TorchOps {
  public:
   using Tensor = torch::Tensor;
@@ -25,12 +25,11 @@ class TorchOps {
       : parameters_(parameters), mode_(mode), device_(device), rule_(rule) {}
 
   Tensor tensor(std::span<const float> values, int rows, int columns) const {
-    return torch::from_blob(const_cast<float*>(values.data()), {rows, columns}, torch::kFloat).clone().to(device_);
+    return torch::from_blob(const_cast<float*>(values.data()), {rows, columns}, torch::kFloat).to(device_, torch::kFloat, false, true);
   }
   Index index(std::span<const std::int32_t> numbers) const {
     return torch::from_blob(const_cast<std::int32_t*>(numbers.data()), {static_cast<std::int64_t>(numbers.size())}, torch::kInt)
-        .clone()
-        .to(device_);
+        .to(device_, torch::kInt, false, true);
   }
   Tensor linear(const nets::Path& path, const Tensor& x, int) { return torch::linear(x, at(path / "weight"), at(path / "bias")); }
   Tensor batch_norm(const nets::Path& path, const Tensor& x) {
@@ -50,19 +49,26 @@ class TorchOps {
   }
 
  protected:
+  // How far the batch's figures are from the running ones, as constants; the running ones move towards the batch's.
+  struct Correction {
+    Tensor stretch, offset;
+  };
+  Correction corrected(const nets::Path& path, const Tensor& x) {
+    const torch::NoGradGuard constants;
+    const auto [variance, mean] = torch::var_mean(x, {0}, false);
+    Tensor running_mean = at(path / "running_mean"), running_var = at(path / "running_var");
+    const Tensor usual = (running_var + nets::norm_epsilon).sqrt(), deviation = (variance + nets::norm_epsilon).sqrt();
+    const Correction out{(deviation / usual).clamp(1.0 / rule_.largest_stretch, rule_.largest_stretch),
+                         ((mean - running_mean) / usual).clamp(-rule_.largest_offset, rule_.largest_offset)};
+    const double n = static_cast<double>(x.size(0)), unbias = n > 1.0 ? n / (n - 1.0) : 1.0;
+    running_mean.mul_(1.0 - rule_.momentum).add_(mean, rule_.momentum);
+    running_var.mul_(1.0 - rule_.momentum).add_(variance, rule_.momentum * unbias);
+    return out;
+  }
   Tensor batch_renorm(const nets::Path& path, const Tensor& x) {
-    const Tensor mean = x.mean(0), variance = x.var(0, false), deviation = (variance + nets::norm_epsilon).sqrt();
-    Tensor running_mean = at(path / "running_mean"), running_var = at(path / "running_var"), stretch, offset;
-    {
-      const torch::NoGradGuard constants;
-      const Tensor usual = (running_var + nets::norm_epsilon).sqrt();
-      stretch = (deviation / usual).clamp(1.0 / rule_.largest_stretch, rule_.largest_stretch);
-      offset = ((mean - running_mean) / usual).clamp(-rule_.largest_offset, rule_.largest_offset);
-      const double n = static_cast<double>(x.size(0)), unbias = n > 1.0 ? n / (n - 1.0) : 1.0;
-      running_mean.mul_(1.0 - rule_.momentum).add_(mean, rule_.momentum);
-      running_var.mul_(1.0 - rule_.momentum).add_(variance, rule_.momentum * unbias);
-    }
-    return ((x - mean) / deviation * stretch + offset) * at(path / "weight") + at(path / "bias");
+    const Tensor mean = x.mean(0), deviation = (x.var(0, false) + nets::norm_epsilon).sqrt();
+    const Correction r = corrected(path, x);
+    return ((x - mean) / deviation * r.stretch + r.offset) * at(path / "weight") + at(path / "bias");
   }
   const Tensor& at(const nets::Path& path) const {
     const auto found = parameters_.find(path.name());

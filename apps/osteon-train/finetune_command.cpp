@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "characters.h"
-#include "interrupt.h"
+#include "../interrupt.h"
 #include "osteon/base/parallel.h"
 #include "osteon/base/progress.h"
 #include "osteon/dataset/holdout.h"
@@ -17,7 +17,7 @@
 #include "osteon/infer/model_folder.h"
 #include "osteon/train/finetune.h"
 #include "osteon_commit.h"
-#include "progress_bar.h"
+#include "../progress_bar.h"
 #include "training_log.h"
 
 namespace osteon::app {

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "interrupt.h"
+#include "../interrupt.h"
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/pack.h"
 #include "osteon/train/trainer.h"

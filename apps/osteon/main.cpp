@@ -8,10 +8,11 @@
 
 #include "commands.h"
 #include "osteon/base/parallel.h"
+#include "osteon/base/progress.h"
 
 namespace {
 
-enum ExitCode { done = 0, bad_input = 2, refused = 3 };
+enum ExitCode { done = 0, bad_input = 2, refused = 3, cancelled = 130 };
 
 // Warnings and progress go to stderr, so that stdout stays free for what a command is asked to print.
 void send_messages_to_stderr() {
@@ -34,6 +35,7 @@ void add_common_options(CLI::App& app) {
 
 void add_commands(CLI::App& app) {
   osteon::app::add_rig_command(app);
+  osteon::app::add_batch_command(app);
   osteon::app::add_render_command(app);
   osteon::app::add_synth_command(app);
   osteon::app::add_dataset_command(app);
@@ -61,6 +63,8 @@ int main(int argc, char** argv) {
   } catch (const osteon::app::Refused& e) {
     spdlog::error(e.what());
     return refused;
+  } catch (const osteon::Cancelled&) {
+    return cancelled;
   } catch (const std::bad_alloc&) {
     spdlog::error("not enough memory");
     return bad_input;

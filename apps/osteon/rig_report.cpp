@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rig_report.h"
 
-#include <fstream>
+#include <array>
 #include <nlohmann/json.hpp>
 
-#include "osteon/base/error.h"
+#include "osteon/io/bytes.h"
 
 namespace osteon::app {
 namespace {
@@ -12,6 +12,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json number(const std::optional<float>& value) { return value ? Json(*value) : Json(nullptr); }
+
+}  // namespace
 
 Json to_json(const pipelines::RigReport& report) {
   Json stages = Json::array();
@@ -33,16 +35,16 @@ Json to_json(const pipelines::RigReport& report) {
           {"repairs", report.repairs}};
 }
 
-}  // namespace
-
 void save_report(const std::filesystem::path& path, const pipelines::RigReport& report, const std::filesystem::path& input) {
   Json json{{"osteon", OSTEON_VERSION}, {"input", input.string()}};
   json.update(to_json(report));
-  std::ofstream file(path);
-  // Names from the input may not be UTF-8.
-  file << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-  file.close();
-  if (!file) throw Error("{}: cannot write the report", path.string());
+  save_json(path, json);
+}
+
+void save_json(const std::filesystem::path& path, const Json& json) {
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  io::write_file(path, std::array{bytes});
 }
 
 }  // namespace osteon::app

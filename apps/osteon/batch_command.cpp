@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "../interrupt.h"
+#include "../progress_bar.h"
+#include "commands.h"
+#include "osteon/base/parallel.h"
+#include "osteon/base/progress.h"
+#include "osteon/io/bytes.h"
+#include "rig_job.h"
+#include "rig_report.h"
+
+namespace osteon::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+struct BatchArguments {
+  fs::path input, output;
+  bool again = false, previews = false;
+  RigOptions options;
+};
+
+// One character of the folder, and what becomes of it.
+struct Job {
+  fs::path input, name;  // name: of the output beside the folder's, without extension
+  std::string settings;  // what the result depends on, beside the program
+  Json report;           // what is, or will be, in the report's file
+};
+
+constexpr std::array kExtensions{".glb", ".gltf", ".obj", ".ply", ".stl", ".fbx", ".dae", ".3ds", ".vrm"};
+
+bool is_character(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(kExtensions, extension) != kExtensions.end();
+}
+
+bool is_within(const fs::path& file, const fs::path& folder) {
+  const fs::path relative = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+// All characters below the folder, in the order of their names, but not what an earlier run wrote.
+std::vector<fs::path> characters_in(const BatchArguments& arguments) {
+  if (!fs::is_directory(arguments.input)) throw Error("{}: expected a folder of characters", arguments.input.string());
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(arguments.input, fs::directory_options::skip_permission_denied))
+    if (entry.is_regular_file() && is_character(entry.path()) && !is_within(entry.path(), arguments.output)) files.push_back(entry.path());
+  if (files.empty()) throw Error("{}: found no characters, expected files {}", arguments.input.string(), fmt::join(kExtensions, ", "));
+  std::ranges::sort(files);
+  return files;
+}
+
+// hero.obj becomes hero.glb; where hero.fbx lies beside it, hero.obj.glb and hero.fbx.glb.
+std::vector<Job> jobs_of(const BatchArguments& arguments, const std::string& settings) {
+  std::vector<Job> jobs;
+  std::map<fs::path, int> of_name;
+  const auto bare = [&](const fs::path& file) { return fs::relative(file, arguments.input).replace_extension(); };
+  const std::vector<fs::path> files = characters_in(arguments);
+  for (const fs::path& file : files) ++of_name[bare(file)];
+  for (const fs::path& file : files) {
+    const fs::path name = of_name[bare(file)] > 1 ? fs::relative(file, arguments.input) : bare(file);
+    const auto changed = fs::last_write_time(file).time_since_epoch().count();
+    jobs.push_back({file, name, fmt::format("{}; {} bytes, changed {}", settings, fs::file_size(file), changed), {}});
+  }
+  return jobs;
+}
+
+fs::path output_of(const BatchArguments& arguments, const Job& job, const char* extension) {
+  return arguments.output / (job.name.string() + extension);
+}
+
+// What a run that was killed left: files on their way (io::write_file), named .PROCESS.tmp.
+void remove_leftovers(const fs::path& folder) {
+  static const std::regex on_its_way(R"(.*\.[0-9]+\.tmp)");
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), on_its_way)) left.push_back(entry.path());
+  for (const fs::path& file : left) fs::remove(file);
+}
+
+// A report is written last, so what it tells of is whole. Failures are tried again: a disk may have been full.
+bool is_done(const BatchArguments& arguments, Job& job) {
+  std::ifstream file(output_of(arguments, job, ".json"));
+  Json report = Json::parse(file, nullptr, false);
+  if (!report.is_object() || report.value("settings", "") != job.settings) return false;
+  const std::string status = report.value("status", "");
+  const bool done = status == "refused" || (status == "rigged" && fs::exists(output_of(arguments, job, ".glb")));
+  if (done) job.report = std::move(report);
+  return done;
+}
+
+void rig_job(const BatchArguments& arguments, const infer::RignetModels& models, Job& job) {
+  const auto start = Clock::now();
+  Json warnings = Json::array(), seen = Json::object();
+  const char* status = "rigged";
+  std::string why;
+  try {
+    fs::create_directories(output_of(arguments, job, ".glb").parent_path());
+    RigOutputs outputs{output_of(arguments, job, ".glb"), {}, {}};
+    if (arguments.previews) outputs.preview = output_of(arguments, job, ".png");
+    rig_file(
+        job.input, outputs, arguments.options, models, [&](const std::string& message) { warnings.push_back(message); },
+        [&](const pipelines::RigReport& report) { seen = to_json(report); });
+  } catch (const Refused& e) {
+    status = "refused";
+    why = e.what();
+  } catch (const std::bad_alloc&) {
+    status = "failed";
+    why = "not enough memory";
+  } catch (const std::exception& e) {
+    status = "failed";
+    why = e.what();
+  }
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  job.report = {{"osteon", OSTEON_VERSION}, {"input", job.input.string()}, {"status", status},    {"why", why},
+                {"seconds", seconds},       {"settings", job.settings},    {"messages", warnings}};
+  job.report.update(seen);
+  save_json(output_of(arguments, job, ".json"), job.report);
+}
+
+// Files side by side, each on one core: nothing waits but for the last ones.
+void rig_all(const BatchArguments& arguments, std::vector<Job*>& jobs) {
+  if (jobs.empty()) return;
+  const infer::RignetModels models = arguments.options.models.load();
+  ProgressBar progress;
+  std::mutex mutex;
+  std::size_t done = 0;
+  catch_interrupts();
+  parallel_for(jobs.size(), 1, [&](std::size_t begin, std::size_t) {
+    if (interrupted != 0) return;
+    rig_job(arguments, models, *jobs[begin]);
+    const std::lock_guard lock(mutex);
+    ++done;
+    progress.show("rigging", static_cast<double>(done) / static_cast<double>(jobs.size()),
+                  fmt::format("{}/{}  {}", done, jobs.size(), jobs[begin]->name.string()));
+  });
+}
+
+std::string csv_row(const Json& report) {
+  const auto number = [&](const char* key) { return report.contains(key) && report[key].is_number() ? report[key].dump() : ""; };
+  const auto text = [&](const char* key) {
+    std::string quoted = report.value(key, "");
+    for (std::size_t at = 0; (at = quoted.find('"', at)) != std::string::npos; at += 2) quoted.insert(at, 1, '"');
+    return '"' + quoted + '"';
+  };
+  return fmt::format("{},{},{},{},{},{},{}\n", text("input"), text("status"), number("vertices"), number("joints"), number("confidence"),
+                     number("seconds"), text("why"));
+}
+
+void save_summary(const fs::path& path, const std::vector<Job>& jobs) {
+  std::string csv = "file,status,vertices,joints,confidence,seconds,why\n";
+  for (const Job& job : jobs)
+    if (job.report.is_object()) csv += csv_row(job.report);
+  io::write_file(path, std::array{std::span(reinterpret_cast<const std::uint8_t*>(csv.data()), csv.size())});
+}
+
+void print_summary(const BatchArguments& arguments, const std::vector<Job>& jobs, std::size_t before, double seconds) {
+  std::map<std::string, std::size_t> counts;
+  std::size_t widest = 4;
+  for (const Job& job : jobs) widest = std::max(widest, job.name.string().size());
+  fmt::print("{:<{}}  {:<8} {:>9} {:>7} {:>11} {:>8}\n", "file", widest, "status", "vertices", "joints", "confidence", "seconds");
+  for (const Job& job : jobs) {
+    if (!job.report.is_object()) continue;
+    const std::string status = job.report.value("status", "");
+    ++counts[status];
+    fmt::print("{:<{}}  {:<8} ", job.name.string(), widest, status);
+    if (status == "rigged")
+      fmt::print("{:>9} {:>7} {:>11.2f} {:>8.2f}\n", job.report.value("vertices", 0), job.report.value("joints", 0),
+                 job.report.value("confidence", 0.0), job.report.value("seconds", 0.0));
+    else
+      fmt::print("{}\n", job.report.value("why", ""));
+  }
+  fmt::print("{} of {} files: {} rigged, {} refused, {} failed, {} of these before; {:.1f} s. Table: {}\n",
+             counts["rigged"] + counts["refused"] + counts["failed"], jobs.size(), counts["rigged"], counts["refused"], counts["failed"],
+             before, seconds, (arguments.output / "summary.csv").string());
+}
+
+void batch(const BatchArguments& arguments, const std::string& settings) {
+  const auto start = Clock::now();
+  std::vector<Job> jobs = jobs_of(arguments, settings);
+  std::vector<Job*> open;
+  for (Job& job : jobs)
+    if (arguments.again || !is_done(arguments, job)) open.push_back(&job);
+  fs::create_directories(arguments.output);
+  remove_leftovers(arguments.output);
+  rig_all(arguments, open);
+  save_summary(arguments.output / "summary.csv", jobs);
+  print_summary(arguments, jobs, jobs.size() - open.size(), std::chrono::duration<double>(Clock::now() - start).count());
+  const auto ended_as = [&](const char* status) {
+    return std::ranges::count_if(jobs, [&](const Job& job) { return job.report.is_object() && job.report.value("status", "") == status; });
+  };
+  if (interrupted != 0) throw Cancelled();
+  if (const auto failed = ended_as("failed"); failed > 0)
+    throw Error("{} of {} files could not be rigged (see above)", failed, jobs.size());
+  if (const auto refused = ended_as("refused"); refused > 0)
+    throw Refused("{} of {} files were refused (see above, and --min-confidence)", refused, jobs.size());
+}
+
+// The command's options as they stand, without the folders: a file that was rigged with others is rigged again.
+std::string settings_of(const CLI::App& command) {
+  std::string settings = "osteon " OSTEON_VERSION;
+  for (const CLI::Option* option : command.get_options({}))
+    if (option->count() > 0 && option->get_name() != "input" && !option->check_name("--output") && !option->check_name("--again"))
+      settings += fmt::format(" {} {}", option->get_name(), fmt::join(option->results(), " "));
+  return settings;
+}
+
+}  // namespace
+
+void add_batch_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("batch", "Rig all characters of a folder, and go on where an earlier run stopped");
+  auto arguments = std::make_shared<BatchArguments>();
+  command->add_option("input", arguments->input, "The folder; folders in it are looked through too")->required()->type_name("FOLDER");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Folder of the results: for each character a GLB and a report (JSON) under its name; summary.csv")
+      ->required()
+      ->type_name("FOLDER");
+  command->add_flag("--previews", arguments->previews, "Also draw a picture of each (PNG)");
+  command->add_flag("--again", arguments->again, "Also those that are done");
+  arguments->options.add_to(*command);
+  command->callback([arguments, command] { batch(*arguments, settings_of(*command)); });
+}
+
+}  // namespace osteon::app

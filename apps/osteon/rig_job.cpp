@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig_job.h"
+
+#include "commands.h"
+#include "load_options.h"
+#include "osteon/io/rigtxt.h"
+#include "preview.h"
+
+namespace osteon::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Warn = std::function<void(const std::string&)>;
+
+void add_skeleton_options(CLI::App& command, RigOptions& options) {
+  auto& rignet = options.rignet;
+  auto* detail = command.add_option("--detail", rignet.detail, "How many joints to find: 0 few .. 1 many")
+                     ->check(CLI::Range(0.0f, 1.0f))
+                     ->capture_default_str();
+  auto* bandwidth = command.add_option("--bandwidth", rignet.bandwidth, "The same as RigNet's mean shift bandwidth")
+                        ->check(CLI::Range(pipelines::kFinestBandwidth, pipelines::kCoarsestBandwidth));
+  auto* joints = command.add_option("--joints", rignet.joints, "The same as about how many joints")->check(CLI::Range(1, 254));
+  auto* skeleton = command.add_option("--skeleton", options.skeleton, "Use this file's skeleton as it is, only find the skin weights")
+                       ->type_name("FILE");
+  detail->excludes(bandwidth)->excludes(joints)->excludes(skeleton);
+  bandwidth->excludes(joints)->excludes(skeleton);
+  joints->excludes(skeleton);
+  static const std::map<std::string, pipelines::Symmetry> symmetries{{"auto", pipelines::Symmetry::automatic},
+                                                                     {"off", pipelines::Symmetry::off}};
+  command.add_option("--symmetry", rignet.symmetry, "Make the skeleton symmetric where the mesh is (auto) or never (off)")
+      ->transform(CLI::CheckedTransformer(symmetries))
+      ->type_name("auto|off")
+      ->default_str("auto");
+}
+
+void pass_on(const Warn& warn, const fs::path& file, const std::vector<std::string>& messages) {
+  for (const std::string& message : messages) warn(fmt::format("{}: {}", file.string(), message));
+}
+
+pipelines::RignetOptions pipeline_options(const RigOptions& options) {
+  auto out = options.rignet;
+  if (options.load.up) out.up = pipelines::Up::y;  // the file was read so that y is up
+  out.skin.max_influences = static_cast<std::size_t>(options.save.max_influences);
+  if (options.skeleton) out.skeleton = io::load_skeleton(*options.skeleton, options.load);
+  return out;
+}
+
+// A rig that the program does not trust itself is not written at all.
+void refuse_if_poor(const fs::path& input, float confidence, float least) {
+  if (confidence < least)
+    throw Refused("{}: the confidence in this rig is {:.2f}, less than {:.2f}; nothing was written (see --min-confidence)", input.string(),
+                  confidence, least);
+}
+
+// rig.txt knows vertices by number only: the mesh goes beside it as an OBJ, in the same order.
+fs::path obj_beside(fs::path rigtxt) { return rigtxt.replace_extension(".obj"); }
+
+void check_outputs(const fs::path& input, const RigOutputs& outputs) {
+  std::error_code missing;  // a file that is not there is not the input
+  if (outputs.rigtxt && fs::equivalent(obj_beside(*outputs.rigtxt), input, missing))
+    throw Error("--rigtxt {}: {} beside it is the input and would be overwritten; choose another name", outputs.rigtxt->string(),
+                obj_beside(*outputs.rigtxt).string());
+}
+
+void write_rig(const RigOutputs& outputs, const RigOptions& options, const io::Asset& asset, const pipelines::RignetResult& result,
+               const Warn& warn) {
+  pass_on(warn, outputs.glb, io::save_glb(outputs.glb, asset, result.skeleton, result.weights, options.save));
+  if (outputs.rigtxt) {
+    io::save_rigtxt(*outputs.rigtxt, result.skeleton, result.weights);
+    io::save_obj(obj_beside(*outputs.rigtxt), asset.mesh);
+  }
+  if (outputs.preview) save_preview(*outputs.preview, asset.mesh, &result.skeleton, &result.weights, 1);
+}
+
+}  // namespace
+
+void RigOptions::add_to(CLI::App& command) {
+  add_skeleton_options(command, *this);
+  command.add_option("--max-influences", save.max_influences, "Joints that may move one vertex")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command.add_option("--min-confidence", min_confidence, "Write nothing, and exit with 3, below this (0..1)")
+      ->check(CLI::Range(0.0f, 1.0f))
+      ->capture_default_str();
+  add_load_options(command, load);
+  models.add_to(command);
+}
+
+void rig_file(const fs::path& input, const RigOutputs& outputs, const RigOptions& options, const infer::RignetModels& models,
+              const Warn& warn, const std::function<void(const pipelines::RigReport&)>& look) {
+  check_outputs(input, outputs);
+  const io::Asset asset = io::load(input, options.load);
+  pass_on(warn, input, asset.repairs);
+  const auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options));
+  pass_on(warn, input, result.report.repairs);
+  pass_on(warn, input, result.report.warnings);
+  look(result.report);
+  refuse_if_poor(input, result.report.confidence, options.min_confidence);
+  write_rig(outputs, options, asset, result, warn);
+}
+
+}  // namespace osteon::app

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// A folder of characters, with the weights that are shipped.
+#include <nlohmann/json.hpp>
+
+#include "osteon/io/save.h"
+#include "osteon/program.h"
+#include "osteon/synth/character.h"
+
+namespace osteon {
+namespace {
+
+using test::content;
+using test::osteon;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class BatchCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::getenv("OSTEON_MODELS") && !fs::exists(OSTEON_MODELS_FOLDER "/rignet")) GTEST_SKIP() << "models/rignet is not there";
+    fs::create_directories(folder_ / "in/far/away");
+    const auto make = [&](synth::Kind kind, const char* name) {
+      io::save_obj(folder_ / name, synth::make_character(kind, 3, {40, synth::Finish::Faceted}).mesh);
+    };
+    make(synth::Kind::Biped, "in/hero.obj");
+    make(synth::Kind::Bird, "in/far/bird.obj");
+    make(synth::Kind::Fish, "in/far/away/fish.obj");
+    make(synth::Kind::Quadruped, "in/horse.obj");
+  }
+
+  nlohmann::json report(const char* name) const { return nlohmann::json::parse(content(folder_ / name)); }
+
+  test::TemporaryFolder folder_;
+};
+
+const std::vector<const char*> kRigs{"hero.glb", "horse.glb", "far/bird.glb", "far/away/fish.glb"};
+
+TEST_F(BatchCommand, rigs_every_character_as_rig_does) {
+  const auto run = osteon(folder_, "batch in -o out");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("4 of 4 files: 4 rigged, 0 refused, 0 failed, 0 of these before"));
+  ASSERT_EQ(osteon(folder_, "rig in/far/bird.obj -o bird.glb").code, 0);
+  EXPECT_TRUE(content(folder_ / "out/far/bird.glb") == content(folder_ / "bird.glb"));
+  EXPECT_EQ(report("out/far/bird.json")["status"], "rigged");
+  EXPECT_GT(report("out/far/bird.json")["joints"], 3);
+  EXPECT_THAT(content(folder_ / "out/summary.csv"), HasSubstr("\"in/far/away/fish.obj\",\"rigged\","));
+}
+
+TEST_F(BatchCommand, one_bad_file_stops_no_other) {
+  std::ofstream(folder_ / "in/broken.obj") << "f 1 2 3\n";
+  std::ofstream(folder_ / "in/notes.txt") << "not a character\n";
+  const auto run = osteon(folder_, "batch in -o out");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.out, HasSubstr("5 of 5 files: 4 rigged, 0 refused, 1 failed"));
+  EXPECT_EQ(report("out/broken.json")["status"], "failed");
+  EXPECT_THAT(report("out/broken.json")["why"], HasSubstr("broken.obj"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/broken.glb"));
+  for (const char* rig : kRigs) EXPECT_TRUE(fs::exists(folder_ / "out" / rig)) << rig;
+}
+
+TEST_F(BatchCommand, does_again_only_what_changed) {
+  ASSERT_EQ(osteon(folder_, "batch in -o out").code, 0);
+  const auto written = fs::last_write_time(folder_ / "out/hero.glb");
+  EXPECT_THAT(osteon(folder_, "batch in -o out").out, HasSubstr("4 of these before"));
+  EXPECT_EQ(fs::last_write_time(folder_ / "out/hero.glb"), written);
+  fs::remove(folder_ / "out/horse.glb");
+  fs::last_write_time(folder_ / "in/hero.obj", fs::last_write_time(folder_ / "in/hero.obj") + std::chrono::seconds(1));
+  EXPECT_THAT(osteon(folder_, "batch in -o out").out, HasSubstr("2 of these before"));
+  EXPECT_THAT(osteon(folder_, "batch in -o out --detail 0.3").out, HasSubstr("0 of these before"));
+  EXPECT_THAT(osteon(folder_, "batch in -o out --detail 0.3 --again").out, HasSubstr("0 of these before"));
+}
+
+// Killed at any moment, begun again: the same files as without, and nothing else.
+TEST_F(BatchCommand, goes_on_after_it_was_killed) {
+  ASSERT_EQ(osteon(folder_, "batch in -o whole").code, 0);
+  for (const char* seconds : {"0.15", "0.3", "0.45"}) {
+    const std::string kill =
+        fmt::format("cd {} && timeout -s KILL {} {} batch in -o out >/dev/null 2>&1", folder_.path().string(), seconds, OSTEON_PROGRAM);
+    [[maybe_unused]] const int killed = std::system(kill.c_str());
+    for (const char* rig : kRigs)
+      if (fs::exists(folder_ / "out" / rig)) EXPECT_TRUE(content(folder_ / "out" / rig) == content(folder_ / "whole" / rig)) << rig;
+  }
+  ASSERT_EQ(osteon(folder_, "batch in -o out").code, 0);
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out")) files += entry.is_regular_file();
+  EXPECT_EQ(files, 2 * kRigs.size() + 1);
+  for (const char* rig : kRigs) EXPECT_TRUE(content(folder_ / "out" / rig) == content(folder_ / "whole" / rig)) << rig;
+}
+
+TEST_F(BatchCommand, names_that_meet_keep_their_extensions) {
+  io::save_obj(folder_ / "in/hero.OBJ", synth::make_character(synth::Kind::Biped, 4, {40, synth::Finish::Faceted}).mesh);
+  ASSERT_EQ(osteon(folder_, "batch in -o out").code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/hero.obj.glb"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/hero.OBJ.glb"));
+}
+
+TEST_F(BatchCommand, says_what_is_wrong_with_a_folder) {
+  EXPECT_THAT(osteon(folder_, "batch nowhere -o out").err, HasSubstr("nowhere: expected a folder"));
+  fs::create_directories(folder_ / "empty");
+  EXPECT_THAT(osteon(folder_, "batch empty -o out").err, HasSubstr("empty: found no characters"));
+}
+
+}  // namespace
+}  // namespace osteon

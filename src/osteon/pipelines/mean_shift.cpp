@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "osteon/base/parallel.h"
+#include "osteon/pipelines/kernel_lanes.h"
 #include "osteon/pipelines/point_grid.h"
 
 namespace osteon::pipelines {
@@ -19,17 +21,13 @@ struct Sums {
 };
 
 Sums sums_at(const Vec3f& p, const PointGrid& grid, const std::vector<PointGrid::Run>& runs, float h2) {
-  float k_sum = 0.0f, x = 0.0f, y = 0.0f, z = 0.0f;
-  for (const auto& [begin, end] : runs)
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const Vec3f d = grid.position(i) - p;
-      const float k = grid.weight(i) * std::max(0.0f, h2 - d.squaredNorm());
-      k_sum += k;
-      x += k * d.x();
-      y += k * d.y();
-      z += k * d.z();
-    }
-  return {k_sum, {x, y, z}};
+  KernelLanes lanes;
+  for (const PointGrid::Run& run : runs) {
+    const auto [x, y, z, weight, count] = grid.columns(run);
+    add_kernel({x, y, z, weight, count}, {p.x(), p.y(), p.z()}, h2, lanes);
+  }
+  const auto total = [](const std::array<float, kLanes>& lane) { return std::accumulate(lane.begin(), lane.end(), 0.0f); };
+  return {total(lanes.k), {total(lanes.x), total(lanes.y), total(lanes.z)}};
 }
 
 std::vector<Vec3f> with_images(std::span<const Vec3f> points, Mirror mirror) {

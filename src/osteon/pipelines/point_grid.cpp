@@ -2,6 +2,7 @@
 #include "osteon/pipelines/point_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -22,22 +23,52 @@ std::uint64_t cell_key(const Vec3f& p, float cell) {
   return part(0) * kStepX + part(1) * kStepY + part(2);
 }
 
+// The indices of the keys, ascending; equal keys in the order of their indices. By counting where the keys' coordinates span a small box.
+std::vector<std::uint32_t> ascending(const std::vector<std::uint64_t>& keys) {
+  std::vector<std::uint32_t> order(keys.size());
+  std::array<std::uint64_t, 3> low{~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}}, high{0, 0, 0};
+  const auto parts = [](std::uint64_t key) { return std::array{key / kStepX, key / kStepY % kStepY, key % kStepY}; };
+  for (const std::uint64_t key : keys)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], parts(key)[axis]);
+      high[axis] = std::max(high[axis], parts(key)[axis]);
+    }
+  std::array<std::uint64_t, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = high[axis] - low[axis] + 1;
+  constexpr std::uint64_t kMostCells = 1 << 18;
+  if (keys.empty() || size[0] > kMostCells || size[1] > kMostCells || size[2] > kMostCells || size[0] * size[1] > kMostCells ||
+      size[0] * size[1] * size[2] > kMostCells) {
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
+    return order;
+  }
+  const auto cell = [&](std::uint64_t key) {
+    const auto [x, y, z] = parts(key);
+    return ((x - low[0]) * size[1] + (y - low[1])) * size[2] + (z - low[2]);
+  };
+  std::vector<std::uint32_t> next(size[0] * size[1] * size[2] + 1, 0);
+  for (const std::uint64_t key : keys) ++next[cell(key) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::uint32_t i = 0; i < keys.size(); ++i) order[next[cell(keys[i])]++] = i;
+  return order;
+}
+
 }  // namespace
 
-PointGrid::PointGrid(std::span<const Vec3f> points, std::span<const float> weights, float cell) : order_(points.size()) {
+PointGrid::PointGrid(std::span<const Vec3f> points, std::span<const float> weights, float cell) {
   assert(points.size() == weights.size());
   std::vector<std::uint64_t> key_of(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) key_of[i] = cell_key(points[i], cell);
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::sort(order_.begin(), order_.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return std::pair(key_of[a], a) < std::pair(key_of[b], b); });
+  order_ = ascending(key_of);
   for (std::uint32_t place = 0; place < order_.size(); ++place) {
     const std::uint32_t i = order_[place];
     if (keys_.empty() || keys_.back() != key_of[i]) {
       keys_.push_back(key_of[i]);
       starts_.push_back(place);
     }
-    positions_.push_back(points[i]);
+    x_.push_back(points[i].x());
+    y_.push_back(points[i].y());
+    z_.push_back(points[i].z());
     weights_.push_back(weights[i]);
   }
   starts_.push_back(static_cast<std::uint32_t>(order_.size()));

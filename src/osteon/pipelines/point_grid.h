@@ -25,15 +25,21 @@ class PointGrid {
 
   // By sorted place, 0..points-1:
   std::uint32_t original(std::size_t place) const { return order_[place]; }  // index in the constructor's spans
-  const Vec3f& position(std::size_t place) const { return positions_[place]; }
-  float weight(std::size_t place) const { return weights_[place]; }
+  Vec3f position(std::size_t place) const { return {x_[place], y_[place], z_[place]}; }
+  // The points of a run coordinate by coordinate, for loops over many of them.
+  struct Columns {
+    const float *x, *y, *z, *weight;
+    std::size_t count;
+  };
+  Columns columns(const Run& run) const {
+    return {&x_[run.begin], &y_[run.begin], &z_[run.begin], &weights_[run.begin], run.end - run.begin};
+  }
 
  private:
   std::vector<std::uint64_t> keys_;    // of the non-empty cells, ascending
   std::vector<std::uint32_t> starts_;  // first place of each cell, then the number of points
   std::vector<std::uint32_t> order_;
-  std::vector<Vec3f> positions_;
-  std::vector<float> weights_;
+  std::vector<float> x_, y_, z_, weights_;
 };
 
 }  // namespace osteon::pipelines

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -15,13 +16,21 @@ namespace osteon::app {
 struct ModelOptions {
   std::string name = "rignet";
   std::optional<std::filesystem::path> folder;
+  tensor::Precision precision = tensor::Precision::f32;
 
   void add_to(CLI::App& command) {
-    CLI::Option* by_name =
-        command.add_option("--model", name, "Which of the shipped networks: rignet (ours) or rignet-2020 (the paper's)")->capture_default_str();
+    CLI::Option* by_name = command.add_option("--model", name, "Which of the shipped networks: rignet (ours) or rignet-2020 (the paper's)")
+                               ->capture_default_str();
     command.add_option("--models", folder, "Use the networks' weights of this folder")->type_name("FOLDER")->excludes(by_name);
+    static const std::map<std::string, tensor::Precision> precisions{{"f32", tensor::Precision::f32}, {"bf16", tensor::Precision::bf16}};
+    command
+        .add_option("--precision", precision,
+                    "Numbers that the networks multiply: f32, or bf16 on processors that have it, which is faster")
+        ->transform(CLI::CheckedTransformer(precisions))
+        ->type_name("f32|bf16")
+        ->default_str("f32");
   }
-  infer::RignetModels load() const { return infer::RignetModels::load(folder ? *folder : infer::find_models(name)); }
+  infer::RignetModels load() const { return infer::RignetModels::load(folder ? *folder : infer::find_models(name), precision); }
 };
 
 }  // namespace osteon::app

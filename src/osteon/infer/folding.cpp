@@ -44,12 +44,14 @@ Affine normalization(const Parameters& parameters, const nets::Path& path) {
   return {narrow(scale), narrow(figure("bias") - figure("running_mean") * scale)};
 }
 
-tensor::DenseLayer folded_linear(const Parameters& parameters, const nets::Path& path, const Affine& input, tensor::Activation activation) {
+tensor::DenseLayer folded_linear(const Parameters& parameters, const nets::Path& path, const Affine& input, tensor::Activation activation,
+                                 tensor::Precision precision) {
   Layer layer = folded(linear_at(parameters, path), input);
-  return {std::move(layer.weights), narrow(layer.bias), activation};
+  return {std::move(layer.weights), narrow(layer.bias), activation, precision};
 }
 
-tensor::EdgeConvolution::Weights folded_edge_convolution(const Parameters& parameters, const nets::Path& path, const Affine& input) {
+tensor::EdgeConvolution::Weights folded_edge_convolution(const Parameters& parameters, const nets::Path& path, const Affine& input,
+                                                         tensor::Precision precision) {
   const Layer first = linear_at(parameters, path / 0 / "linear");
   Layer second = folded(linear_at(parameters, path / 1 / "linear"), normalization(parameters, path / 0 / "norm"));
   const Affine last = normalization(parameters, path / 1 / "norm");
@@ -67,7 +69,10 @@ tensor::EdgeConvolution::Weights folded_edge_convolution(const Parameters& param
     sign.push_back(last.scale[static_cast<std::size_t>(r)] < 0 ? -1.0f : 1.0f);
     second.weights.row(r) *= sign.back();
   }
-  return {{std::move(ends.weights), narrow(ends.bias), tensor::Activation::none}, std::move(second.weights), sign, narrow(second.bias)};
+  return {{std::move(ends.weights), narrow(ends.bias), tensor::Activation::none, precision},
+          std::move(second.weights),
+          sign,
+          narrow(second.bias)};
 }
 
 }  // namespace osteon::infer

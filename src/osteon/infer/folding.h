@@ -19,9 +19,11 @@ struct Affine {
 Affine normalization(const Parameters& parameters, const nets::Path& path);
 
 // The linear layer at `path` for input to which `input` is still to be applied.
-tensor::DenseLayer folded_linear(const Parameters& parameters, const nets::Path& path, const Affine& input, tensor::Activation activation);
+tensor::DenseLayer folded_linear(const Parameters& parameters, const nets::Path& path, const Affine& input, tensor::Activation activation,
+                                 tensor::Precision precision);
 
 // The edge convolution MLP[2C, H, H] at `path` without its last normalisation (which only gives the signs); see tensor::EdgeConvolution.
-tensor::EdgeConvolution::Weights folded_edge_convolution(const Parameters& parameters, const nets::Path& path, const Affine& input);
+tensor::EdgeConvolution::Weights folded_edge_convolution(const Parameters& parameters, const nets::Path& path, const Affine& input,
+                                                         tensor::Precision precision);
 
 }  // namespace osteon::infer

@@ -106,7 +106,7 @@ const tensor::Tensor& Onednn::Value::stored() {
 
 tensor::Tensor Onednn::Value::applied() { return after ? loops::scale_shift(stored(), after->scale, after->shift) : stored(); }
 
-Onednn::Onednn(Parameters parameters) : parameters_(std::move(parameters)) {}
+Onednn::Onednn(Parameters parameters, tensor::Precision precision) : parameters_(std::move(parameters)), precision_(precision) {}
 Onednn::~Onednn() = default;
 
 // Pre: the mutex is held, here and in the next three.
@@ -122,7 +122,7 @@ const Onednn::Chain& Onednn::chain(const Path& path, const Input& input, std::si
     std::vector<tensor::DenseLayer> layers;
     Affine before = affine_of(input);
     for (int step = 0; step < static_cast<int>(steps); ++step) {
-      layers.push_back(folded_linear(parameters_, path / step / "linear", before, Activation::relu));
+      layers.push_back(folded_linear(parameters_, path / step / "linear", before, Activation::relu, precision_));
       before = *norm(path / step / "norm");
     }
     known = std::make_unique<Chain>(Chain{norms_of(input), packed(input, layers), norm(path / static_cast<int>(steps - 1) / "norm")});
@@ -134,7 +134,7 @@ const Onednn::Chain& Onednn::chain(const Path& path, const Input& input, std::si
 const Onednn::Chain& Onednn::single(const Path& path, const Input& input) {
   std::unique_ptr<Chain>& known = chains_[path.name()];
   if (!known) {
-    const tensor::DenseLayer layer = folded_linear(parameters_, path, affine_of(input), Activation::none);
+    const tensor::DenseLayer layer = folded_linear(parameters_, path, affine_of(input), Activation::none, precision_);
     known = std::make_unique<Chain>(Chain{norms_of(input), packed(input, {&layer, 1}), nullptr});
     parameters_.forget(path);
   }
@@ -144,7 +144,7 @@ const Onednn::Chain& Onednn::single(const Path& path, const Input& input) {
 const Onednn::Convolution& Onednn::convolution(const Path& path, const Value& x) {
   std::unique_ptr<Convolution>& known = convolutions_[path.name()];
   if (!known) {
-    tensor::EdgeConvolution layer(folded_edge_convolution(parameters_, path, affine_of(x.after, x.columns)));
+    tensor::EdgeConvolution layer(folded_edge_convolution(parameters_, path, affine_of(x.after, x.columns), precision_));
     known = std::make_unique<Convolution>(Convolution{x.after, std::move(layer), norm(path / 1 / "norm")});
     parameters_.forget(path);
   }

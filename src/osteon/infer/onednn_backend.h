@@ -34,7 +34,8 @@ class Onednn {
     std::shared_ptr<const std::vector<std::int32_t>> numbers;
   };
 
-  explicit Onednn(Parameters parameters);
+  // Pre: precision is f32 or tensor::has_bf16().
+  explicit Onednn(Parameters parameters, tensor::Precision precision = tensor::Precision::f32);
   ~Onednn();
   Onednn(const Onednn&) = delete;
   Onednn& operator=(const Onednn&) = delete;
@@ -68,6 +69,7 @@ class Onednn {
 
   std::mutex mutex_;  // of everything below
   Parameters parameters_;
+  tensor::Precision precision_;
   std::map<std::string, Norm> norms_;
   std::map<std::string, std::unique_ptr<Chain>> chains_;
   std::map<std::string, std::unique_ptr<Convolution>> convolutions_;

@@ -135,12 +135,14 @@ nets::JointArrays single_skeleton(std::span<const Vec3f> joints, std::span<const
 
 RignetModels RignetModels::load() { return load(find_models("rignet")); }
 
-RignetModels RignetModels::load(const fs::path& folder) {
+RignetModels RignetModels::load(const fs::path& folder, tensor::Precision precision) {
+  if (precision == tensor::Precision::bf16 && !tensor::has_bf16())
+    throw Error("this processor does not multiply bf16 (AVX512-BF16 or AMX), expected --precision f32");
   const std::vector<Network> present = networks_in(folder);
   auto networks = std::make_unique<Networks>();
   parallel_for(present.size(), 1, [&](std::size_t i, std::size_t) {
     const Network network = present[i];
-    auto backend = std::make_unique<Onednn>(load_parameters(file_of(folder, network), nets::rignet::parameter_shapes(network)));
+    auto backend = std::make_unique<Onednn>(load_parameters(file_of(folder, network), nets::rignet::parameter_shapes(network)), precision);
     pack_weights(network, *backend);
     networks->by_network[static_cast<std::size_t>(network)] = std::move(backend);
   });

@@ -8,6 +8,7 @@
 
 #include "osteon/base/types.h"
 #include "osteon/nets/graph.h"
+#include "osteon/tensor/precision.h"
 
 namespace osteon::infer {
 
@@ -35,7 +36,8 @@ class RignetModels {
  public:
   // From {votes,bones,root,bind}.safetensors, float32 or float16. The paper's networks may be there instead: joints and attention for
   // votes, skin for bind. Throws one Error that names each missing file, or each parameter of a file that does not fit.
-  static RignetModels load(const std::filesystem::path& folder);
+  // Throws Error where products in bf16 are asked for and this processor has none.
+  static RignetModels load(const std::filesystem::path& folder, tensor::Precision precision = tensor::Precision::f32);
   static RignetModels load();  // from where find_models("rignet") says
 
   ~RignetModels();

@@ -23,7 +23,7 @@ PackedMlp pack_ends(const DenseLayer& layer) {
 
 EdgeConvolution::EdgeConvolution(Weights weights)
     : ends_(pack_ends(weights.ends)),
-      messages_(weights.messages, {}, Activation::none),
+      messages_(weights.messages, {}, Activation::none, weights.ends.precision),
       sign_(std::move(weights.sign)),
       shift_(std::move(weights.shift)) {
   assert(ends_.outputs() == 2 * messages_.outputs());

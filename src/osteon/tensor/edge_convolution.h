@@ -28,7 +28,7 @@ struct EdgeList {
 class EdgeConvolution {
  public:
   struct Weights {
-    DenseLayer ends;                 // (2H, C): P above Q; no activation
+    DenseLayer ends;                 // (2H, C): P above Q; no activation; its precision is that of all products
     Matrix messages;                 // (H, H): W
     std::vector<float> sign, shift;  // (H)
   };

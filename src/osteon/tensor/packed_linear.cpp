@@ -41,9 +41,16 @@ dnnl::stream& stream() {
 
 memory::dim dim(std::size_t n) { return static_cast<memory::dim>(n); }
 
-memory::desc dense(std::size_t rows, std::size_t columns) {
-  return {{dim(rows), dim(columns)}, memory::data_type::f32, memory::format_tag::ab};
+memory::desc dense(std::size_t rows, std::size_t columns, memory::data_type type = memory::data_type::f32) {
+  return {{dim(rows), dim(columns)}, type, memory::format_tag::ab};
 }
+
+// Narrow layers take longer to convert than to multiply, and the narrow ones at both ends of a network read and write positions.
+Precision worth_it(std::size_t inputs, std::size_t outputs, Precision precision) {
+  return inputs >= 64 && outputs >= 32 ? precision : Precision::f32;
+}
+
+memory::data_type type_of(Precision precision) { return precision == Precision::bf16 ? memory::data_type::bf16 : memory::data_type::f32; }
 
 // Small products cost about a microsecond to start, so they take more rows at a time; the tile stays within the second-level cache.
 std::size_t rows_per_tile(std::size_t inputs, std::size_t outputs) { return std::max(inputs, outputs) <= 128 ? 128 : 64; }
@@ -57,7 +64,8 @@ dnnl::matmul::primitive_desc describe(std::size_t rows, std::size_t inputs, std:
     after.append_eltwise(1.0f, dnnl::algorithm::eltwise_relu, 0.0f, 0.0f);
     attributes.set_post_ops(after);
   }
-  return {dnnl::matmul::desc(dense(rows, inputs), weights, dense(1, outputs), dense(rows, outputs)), attributes, engine()};
+  return {dnnl::matmul::desc(dense(rows, inputs, weights.data_type()), weights, dense(1, outputs), dense(rows, outputs)), attributes,
+          engine()};
 }
 
 // A product of one height.
@@ -76,12 +84,17 @@ struct Product {
 
 }  // namespace
 
+bool has_bf16() {
+  const auto isa = dnnl::get_effective_cpu_isa();
+  return isa == dnnl::cpu_isa::avx512_core_bf16 || isa == dnnl::cpu_isa::avx512_core_amx;
+}
+
 float* thread_scratch(int slot, std::size_t count) {
   struct Slot {
     std::shared_ptr<float[]> floats;
     std::size_t size = 0;
   };
-  thread_local std::array<Slot, 8> slots;
+  thread_local std::array<Slot, 9> slots;
   Slot& s = slots.at(static_cast<std::size_t>(slot));
   if (s.size < count) s = {aligned_floats(count), count};
   return s.floats.get();
@@ -89,14 +102,16 @@ float* thread_scratch(int slot, std::size_t count) {
 
 struct PackedLinear::Kernels {
   std::size_t inputs, outputs;
+  Precision precision;
   Product tile, tail;
   memory weights, bias;
 
-  Kernels(const Matrix& w, std::span<const float> b, Activation activation)
+  Kernels(const Matrix& w, std::span<const float> b, Activation activation, Precision wanted)
       : inputs(static_cast<std::size_t>(w.cols())),
         outputs(static_cast<std::size_t>(w.rows())),
-        tile(rows_per_tile(inputs, outputs), inputs, outputs,
-             {{dim(inputs), dim(outputs)}, memory::data_type::f32, memory::format_tag::any}, activation),
+        precision(worth_it(inputs, outputs, wanted)),
+        tile(rows_per_tile(inputs, outputs), inputs, outputs, {{dim(inputs), dim(outputs)}, type_of(precision), memory::format_tag::any},
+             activation),
         tail(tail_rows, inputs, outputs, tile.description.weights_desc(), activation),
         weights(tile.description.weights_desc(), engine()),
         bias(dense(1, outputs), engine()) {
@@ -111,7 +126,13 @@ struct PackedLinear::Kernels {
   }
 
   void run(const Product& product, const float* in, float* out) const {
-    const memory source(product.description.src_desc(), engine(), const_cast<float*>(in));
+    const void* from = in;
+    if (precision == Precision::bf16) {
+      auto* rounded = reinterpret_cast<std::uint16_t*>(thread_scratch(8, (product.rows * inputs + 1) / 2));
+      to_bf16(in, product.rows * inputs, rounded);
+      from = rounded;
+    }
+    const memory source(product.description.src_desc(), engine(), const_cast<void*>(from));
     const memory destination(product.description.dst_desc(), engine(), out);
     const memory scratch(product.description.scratchpad_desc(), engine(), thread_scratch(0, product.scratch_floats));
     product.primitive.execute(stream(), {{DNNL_ARG_SRC, source},
@@ -132,9 +153,10 @@ struct PackedLinear::Kernels {
   }
 };
 
-PackedLinear::PackedLinear(const Matrix& weights, std::span<const float> bias, Activation activation) {
+PackedLinear::PackedLinear(const Matrix& weights, std::span<const float> bias, Activation activation, Precision precision) {
+  assert(precision == Precision::f32 || has_bf16());
   const OneThread scope;
-  kernels_ = std::make_unique<Kernels>(weights, bias, activation);
+  kernels_ = std::make_unique<Kernels>(weights, bias, activation, precision);
 }
 PackedLinear::~PackedLinear() = default;
 PackedLinear::PackedLinear(PackedLinear&&) noexcept = default;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "osteon/base/types.h"
+#include "osteon/tensor/precision.h"
 #include "osteon/tensor/row_loops.h"
 
 namespace osteon::tensor {
@@ -18,7 +19,8 @@ namespace osteon::tensor {
 class PackedLinear {
  public:
   // weights: (outputs, inputs) as PyTorch stores them; bias: (outputs), or empty for none.
-  PackedLinear(const Matrix& weights, std::span<const float> bias, Activation activation);
+  // Pre: precision is f32 or has_bf16().
+  PackedLinear(const Matrix& weights, std::span<const float> bias, Activation activation, Precision precision = Precision::f32);
   ~PackedLinear();
   PackedLinear(PackedLinear&&) noexcept;
   PackedLinear& operator=(PackedLinear&&) noexcept;

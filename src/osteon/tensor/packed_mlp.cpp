@@ -38,12 +38,12 @@ Matrix columns_of(const Matrix& weights, std::span<const Block> blocks, const st
   return out;
 }
 
-std::vector<PackedLinear> pack_apart(const Matrix& weights, std::span<const Block> blocks, const std::vector<bool>& apart) {
+std::vector<PackedLinear> pack_apart(const DenseLayer& layer, std::span<const Block> blocks, const std::vector<bool>& apart) {
   std::vector<PackedLinear> out;
   Eigen::Index column = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const auto width = static_cast<Eigen::Index>(blocks[i].columns);
-    if (apart[i]) out.emplace_back(weights.middleCols(column, width), std::span<const float>(), Activation::none);
+    if (apart[i]) out.emplace_back(layer.weights.middleCols(column, width), std::span<const float>(), Activation::none, layer.precision);
     column += width;
   }
   return out;
@@ -51,7 +51,7 @@ std::vector<PackedLinear> pack_apart(const Matrix& weights, std::span<const Bloc
 
 std::vector<PackedLinear> pack(std::span<const DenseLayer> layers) {
   std::vector<PackedLinear> out;
-  for (const DenseLayer& layer : layers) out.emplace_back(layer.weights, layer.bias, layer.activation);
+  for (const DenseLayer& layer : layers) out.emplace_back(layer.weights, layer.bias, layer.activation, layer.precision);
   return out;
 }
 
@@ -76,8 +76,8 @@ PackedMlp::PackedMlp(std::span<const Block> blocks, std::span<const DenseLayer> 
     : first_activation_(layers.front().activation),
       multiplied_apart_(multiplied_apart(blocks)),
       first_(columns_of(layers.front().weights, blocks, multiplied_apart_, false), layers.front().bias,
-             activation_of_product(layers.front(), multiplied_apart_)),
-      apart_(pack_apart(layers.front().weights, blocks, multiplied_apart_)),
+             activation_of_product(layers.front(), multiplied_apart_), layers.front().precision),
+      apart_(pack_apart(layers.front(), blocks, multiplied_apart_)),
       later_(pack(layers.subspan(1))) {
   rows_at_a_time_ = first_.tile_rows();
   for (const PackedLinear& layer : later_) rows_at_a_time_ = std::max(rows_at_a_time_, layer.tile_rows());

@@ -16,6 +16,7 @@ struct DenseLayer {
   Matrix weights;
   std::vector<float> bias;
   Activation activation = Activation::none;
+  Precision precision = Precision::f32;
 };
 
 enum class Reading { own_row, picked_row };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/tensor/row_loops.h"
 
+#include <bit>
+
 #define OSTEON_EVERY_CPU __attribute__((target_clones("avx512f", "avx2", "default")))
 
 namespace osteon::tensor {
@@ -52,6 +54,13 @@ OSTEON_EVERY_CPU void scale_shift(float* x, std::size_t rows, std::size_t width,
   for (std::size_t r = 0; r < rows; ++r) {
     float* __restrict row = x + r * width;
     for (std::size_t c = 0; c < width; ++c) row[c] = scale[c] * row[c] + shift[c];
+  }
+}
+
+OSTEON_EVERY_CPU void to_bf16(const float* __restrict from, std::size_t count, std::uint16_t* __restrict to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto bits = std::bit_cast<std::uint32_t>(from[i]);
+    to[i] = static_cast<std::uint16_t>((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);
   }
 }
 

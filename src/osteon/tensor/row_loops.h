@@ -24,6 +24,9 @@ void sign_shift_relu(float* x, std::size_t rows, std::size_t width, const float*
 // x = scale * x + shift, column by column, for dense rows.
 void scale_shift(float* x, std::size_t rows, std::size_t width, const float* scale, const float* shift);
 
+// to = from rounded to bf16, the upper halves of floats (to nearest, ties to even). Pre: finite.
+void to_bf16(const float* from, std::size_t count, std::uint16_t* to);
+
 enum class Activation { none, relu };
 // x[r] += addend[which[r]], then the activation; dense rows.
 void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Activation activation);

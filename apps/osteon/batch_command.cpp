@@ -11,6 +11,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 
 #include "../interrupt.h"
 #include "../progress_bar.h"
@@ -69,11 +70,15 @@ std::vector<fs::path> characters_in(const BatchArguments& arguments) {
 std::vector<Job> jobs_of(const BatchArguments& arguments, const std::string& settings) {
   std::vector<Job> jobs;
   std::map<fs::path, int> of_name;
-  const auto bare = [&](const fs::path& file) { return fs::relative(file, arguments.input).replace_extension(); };
+  // By the names alone: fs::relative follows links, and the results of a folder of links would go to where these point.
+  const auto below = [&](const fs::path& file) { return file.lexically_relative(arguments.input); };
+  const auto bare = [&](const fs::path& file) { return below(file).replace_extension(); };
   const std::vector<fs::path> files = characters_in(arguments);
   for (const fs::path& file : files) ++of_name[bare(file)];
   for (const fs::path& file : files) {
-    const fs::path name = of_name[bare(file)] > 1 ? fs::relative(file, arguments.input) : bare(file);
+    const fs::path name = of_name[bare(file)] > 1 ? below(file) : bare(file);
+    if (name.empty() || name.is_absolute() || *name.begin() == "..")
+      throw Error("{}: expected a file below {}", file.string(), arguments.input.string());
     const auto changed = fs::last_write_time(file).time_since_epoch().count();
     jobs.push_back({file, name, fmt::format("{}; {} bytes, changed {}", settings, fs::file_size(file), changed), {}});
   }
@@ -102,6 +107,16 @@ bool is_done(const BatchArguments& arguments, Job& job) {
   const bool done = status == "refused" || (status == "rigged" && fs::exists(output_of(arguments, job, ".glb")));
   if (done) job.report = std::move(report);
   return done;
+}
+
+// What is asked for must not cost anybody a character: no result may lie where a file of the input is, under whatever name.
+void check_outputs(const BatchArguments& arguments, const std::vector<Job>& jobs) {
+  std::set<fs::path> inputs;
+  for (const Job& job : jobs) inputs.insert(fs::canonical(job.input));
+  for (const Job& job : jobs)
+    for (const char* extension : {".glb", ".png", ".json"})
+      if (const fs::path place = fs::weakly_canonical(output_of(arguments, job, extension)); inputs.contains(place))
+        throw Error("{}: the result of {} would overwrite it; choose another folder with -o", place.string(), job.input.string());
 }
 
 void rig_job(const BatchArguments& arguments, const infer::RignetModels& models, Job& job) {
@@ -190,12 +205,20 @@ void print_summary(const BatchArguments& arguments, const std::vector<Job>& jobs
              before, seconds, (arguments.output / "summary.csv").string());
 }
 
-void batch(const BatchArguments& arguments, const std::string& settings) {
+void batch(BatchArguments arguments, const std::string& settings) {
   const auto start = Clock::now();
+  for (fs::path* folder : {&arguments.input, &arguments.output}) {
+    *folder = folder->lexically_normal();
+    if (!folder->has_filename()) *folder = folder->parent_path();  // a slash at the end
+  }
+  std::error_code missing;
+  if (fs::equivalent(arguments.input, arguments.output, missing))
+    throw Error("{}: the results would lie among the characters; choose another folder with -o", arguments.output.string());
   std::vector<Job> jobs = jobs_of(arguments, settings);
   std::vector<Job*> open;
   for (Job& job : jobs)
     if (arguments.again || !is_done(arguments, job)) open.push_back(&job);
+  check_outputs(arguments, jobs);
   fs::create_directories(arguments.output);
   remove_leftovers(arguments.output);
   rig_all(arguments, open);

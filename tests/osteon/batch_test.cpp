@@ -94,6 +94,34 @@ TEST_F(BatchCommand, names_that_meet_keep_their_extensions) {
   EXPECT_TRUE(fs::exists(folder_ / "out/hero.OBJ.glb"));
 }
 
+// A folder of links to characters that lie elsewhere: the results stay in the folder that was asked for, the characters as they are.
+TEST_F(BatchCommand, writes_nothing_outside_its_folder) {
+  fs::create_directories(folder_ / "linked/far");
+  fs::copy_file(folder_ / "in/hero.obj", folder_ / "elsewhere.obj");
+  ASSERT_EQ(osteon(folder_, "rig in/hero.obj -o precious.glb").code, 0);
+  const std::string before = content(folder_ / "precious.glb");
+  fs::create_symlink(folder_ / "precious.glb", folder_ / "linked/precious.glb");
+  fs::create_symlink("../../elsewhere.obj", folder_ / "linked/far/other.obj");
+  for (const char* input : {"linked", "linked/", "./linked/../linked"}) {
+    fs::remove_all(folder_ / "out");
+    ASSERT_EQ(osteon(folder_, fmt::format("batch {} -o out", input)).code, 0);
+    EXPECT_TRUE(fs::exists(folder_ / "out/precious.glb") && fs::exists(folder_ / "out/far/other.glb")) << input;
+    EXPECT_TRUE(content(folder_ / "precious.glb") == before);
+    EXPECT_FALSE(fs::exists(folder_ / "precious.json") || fs::exists(folder_ / "elsewhere.glb"));
+  }
+}
+
+TEST_F(BatchCommand, never_overwrites_a_character) {
+  ASSERT_EQ(osteon(folder_, "rig in/hero.obj -o in/rigged.glb").code, 0);
+  const std::string before = content(folder_ / "in/rigged.glb");
+  EXPECT_THAT(osteon(folder_, "batch in -o in").err, HasSubstr("the results would lie among the characters"));
+  EXPECT_THAT(osteon(folder_, "batch in/ -o ./in/.").err, HasSubstr("the results would lie among the characters"));
+  fs::create_directories(folder_ / "out");
+  fs::create_symlink(folder_ / "in/rigged.glb", folder_ / "out/hero.glb");
+  EXPECT_THAT(osteon(folder_, "batch in -o out").err, HasSubstr("would overwrite it"));
+  EXPECT_TRUE(content(folder_ / "in/rigged.glb") == before);
+}
+
 TEST_F(BatchCommand, says_what_is_wrong_with_a_folder) {
   EXPECT_THAT(osteon(folder_, "batch nowhere -o out").err, HasSubstr("nowhere: expected a folder"));
   fs::create_directories(folder_ / "empty");

@@ -182,6 +182,7 @@ void run(const CLI::App& command, Task task, Arguments a) {
   if (a.options.task.run.device.is_cuda()) at::globalContext().setAllowTF32CuBLAS(true);  // as exact as bf16 with f32 sums needs to be here
   const Corpus corpus = corpus_of(a, task);
   a.options.sampling = corpus.sampling;
+  a.options.trained_before = !a.init.empty();
   const auto validation = a.validation.empty() ? std::vector<dataset::Example>{} : examples_of(a.validation, task);
   train::Trainer trainer(task, a.options, starting_model(task, a));
   if (a.resume) trainer.resume();

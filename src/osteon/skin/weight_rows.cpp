@@ -20,13 +20,8 @@ void for_each_row(std::size_t rows, const Work& work) {
   });
 }
 
-void normalize(WeightRow& row) {
-  double sum = 0.0;
-  for (const Influence& i : row) sum += static_cast<double>(i.weight);
-  for (Influence& i : row) i.weight = static_cast<float>(static_cast<double>(i.weight) / sum);
-}
+}  // namespace
 
-// Sorts by joint and adds up what belongs to one.
 void merge(WeightRow& row) {
   std::ranges::stable_sort(row, {}, &Influence::joint);
   std::size_t n = 0;
@@ -38,7 +33,11 @@ void merge(WeightRow& row) {
   row.resize(n);
 }
 
-}  // namespace
+void normalize(WeightRow& row) {
+  double sum = 0.0;
+  for (const Influence& i : row) sum += static_cast<double>(i.weight);
+  for (Influence& i : row) i.weight = static_cast<float>(static_cast<double>(i.weight) / sum);
+}
 
 WeightRows falloff_weights(const BoneDistances& distances, std::span<const Bone> bones, float size, const FalloffOptions& options) {
   WeightRows out(distances.size());

@@ -29,6 +29,12 @@ WeightRows falloff_weights(const BoneDistances& distances, std::span<const Bone>
 // Each vertex follows the joint of its nearest bone alone.
 WeightRows nearest_weights(const BoneDistances& distances, std::span<const Bone> bones);
 
+// Sorts by joint and adds up what belongs to one.
+void merge(WeightRow& row);
+
+// Makes the sum 1. Pre: the row is not empty, weights > 0.
+void normalize(WeightRow& row);
+
 // Each row becomes the mean of its own and the mean of its neighbours' rows, so many times. Sums stay.
 WeightRows smoothed(WeightRows rows, const geometry::Neighbourhoods& one_ring, int times);
 

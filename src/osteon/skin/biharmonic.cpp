@@ -47,6 +47,10 @@ std::uint32_t nearest_bone(const Vec3f& p, std::span<const Bone> bones, float& l
   return best;
 }
 
+bool is_near(JointId joint, std::span<const BoneDistance> near, std::span<const Bone> bones) {
+  return std::ranges::any_of(near, [&](const BoneDistance& d) { return bones[d.bone].start == joint; });
+}
+
 }  // namespace
 
 WeightRows biharmonic_weights(const geometry::BodyLattice& coarse, const BoneDistances& distances, std::span<const Bone> bones) {
@@ -71,6 +75,7 @@ WeightRows biharmonic_weights(const geometry::BodyLattice& coarse, const BoneDis
     WeightRow row;
     for (const auto& [to, length] : coarse.links(coarse.node(v)))
       if (!coarse.is_vertex(to)) row.insert(row.end(), of_nodes[VertexId{to}].begin(), of_nodes[VertexId{to}].end());
+    std::erase_if(row, [&](const Influence& i) { return !is_near(i.joint, distances.of(v), bones); });
     if (row.empty()) continue;
     merge(row);
     normalize(row);

@@ -12,6 +12,8 @@ class App;
 namespace osteon::app {
 
 void add_rig_command(CLI::App& app);
+void add_skin_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_synth_command(CLI::App& app);
 void add_dataset_command(CLI::App& app);

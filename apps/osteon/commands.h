@@ -13,6 +13,8 @@ namespace osteon::app {
 
 void add_rig_command(CLI::App& app);
 void add_batch_command(CLI::App& app);
+void add_skin_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_synth_command(CLI::App& app);
 void add_dataset_command(CLI::App& app);

@@ -19,6 +19,7 @@
 #include "model_options.h"
 #include "osteon/metrics/score_table.h"
 #include "rigged_file.h"
+#include "skin_methods.h"
 
 namespace osteon::app {
 namespace {
@@ -168,6 +169,7 @@ std::vector<double> score(Task task, const Subject& subject, const infer::Rignet
 
 Tables evaluate_split(const EvaluateArguments& arguments) {
   const auto models = arguments.models.load();
+  if (arguments.task == "skin-methods") return {skin_methods_table(arguments.data, arguments.split, models, kSkinColumns)};
   Tables tables{{"skeleton", kSkeletonColumns, {}, {}},
                 {"skin, skeleton given", kSkinColumns, {}, {}},
                 {"connectivity, joints given", kConnectivityColumns, {}, {}}};
@@ -277,8 +279,9 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--split", arguments->split, "Which split of the manifest")->capture_default_str();
   command
       ->add_option("--task", arguments->task,
-                   "What to measure: the skeleton from the bare mesh, the skin for the reference's skeleton, the bones between its joints")
-      ->check(CLI::IsMember({"skeleton", "skin", "connectivity", "all"}))
+                   "What to measure: the skeleton from the bare mesh, the skin for the reference's skeleton, the bones between its joints; "
+                   "skin-methods: the skin by every method")
+      ->check(CLI::IsMember({"skeleton", "skin", "connectivity", "skin-methods", "all"}))
       ->capture_default_str();
   command
       ->add_option_function<int>(

@@ -36,6 +36,8 @@ void add_common_options(CLI::App& app) {
 void add_commands(CLI::App& app) {
   osteon::app::add_rig_command(app);
   osteon::app::add_batch_command(app);
+  osteon::app::add_skin_command(app);
+  osteon::app::add_compare_command(app);
   osteon::app::add_render_command(app);
   osteon::app::add_synth_command(app);
   osteon::app::add_dataset_command(app);

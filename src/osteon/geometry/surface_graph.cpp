@@ -143,6 +143,10 @@ void add_bridges(const TriangleMesh& mesh, float reach, std::vector<Link>& links
     for (VertexId corner : mesh.faces[face]) links.push_back({number(vertex), number(corner), distance(mesh, vertex, corner)});
 }
 
+SurfaceGraph graph_of(const TriangleMesh& mesh, const std::vector<Link>& links) {
+  return with_links({std::vector<std::uint32_t>(mesh.positions.size() + 1, 0), {}}, links);
+}
+
 }  // namespace
 
 SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge) {
@@ -150,7 +154,14 @@ SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge) {
   links.reserve(3 * mesh.faces.size());
   add_edges(mesh, links);
   add_bridges(mesh, bridge, links);
-  return with_links({std::vector<std::uint32_t>(mesh.positions.size() + 1, 0), {}}, links);
+  return graph_of(mesh, links);
+}
+
+SurfaceGraph surface_graph(const TriangleMesh& mesh) {
+  std::vector<Link> links;
+  links.reserve(3 * mesh.faces.size());
+  add_edges(mesh, links);
+  return graph_of(mesh, links);
 }
 
 SurfaceGraph with_links(const SurfaceGraph& graph, std::span<const Link> links) {

@@ -30,6 +30,7 @@ struct SurfaceGraph {
 //   the nearest face of each other component, if within `bridge`. Faces whose normal disagrees with the vertex's do not count (cosine <= -0.5, as
 //   in RigNet's sample graph: the two sides of a thin part, or two limbs that touch). Vertices without faces have no normal and agree with all.
 SurfaceGraph surface_graph(const TriangleMesh& mesh, float bridge);
+SurfaceGraph surface_graph(const TriangleMesh& mesh);  // without bridges
 
 struct Link {
   std::uint32_t from, to;

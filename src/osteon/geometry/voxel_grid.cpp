@@ -6,9 +6,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 
 #include "osteon/base/parallel.h"
+#include "osteon/geometry/axis_crossings.h"
 
 namespace osteon::geometry {
 namespace {
@@ -103,14 +103,21 @@ void mark_surface(const std::vector<Corners>& faces, VoxelGrid& grid) {
   });
 }
 
-// Lines through the cells' centres along one axis, and how often each goes into (+1) or out of (-1) the body at each cell. Corners are
-// rounded to 1/1024 cell, so that edge tests are exact and a line through an edge or corner crosses exactly one of the faces around it.
+// How often the lines through the cells' centres along one axis go into (+1) or out of (-1) the body at each cell.
 class View {
  public:
-  View(const std::vector<Corners>& faces, const VoxelGrid& grid, int axis)
-      : size_(grid.size), axis_(axis), u_((axis + 1) % 3), v_((axis + 2) % 3), depth_(grid.voxels.size(), 0) {
+  View(const std::vector<Corners>& faces, const VoxelGrid& grid, int axis) : size_(grid.size), axis_(axis), depth_(grid.voxels.size(), 0) {
     strides_ = Array3i(size_.y() * size_.z(), size_.z(), 1);
-    for (const Corners& t : faces) add(t);
+    const AxisCrossings lines(axis);
+    for (const Corners& t : faces)
+      lines.visit(t, [&](int iu, int iv, double at, int sign) {
+        Array3i cell;  // the first whose centre lies behind the face
+        cell[axis] = std::clamp(static_cast<int>(std::ceil(at - 0.5)), 0, size_[axis] - 1);
+        cell[(axis + 1) % 3] = iu;
+        cell[(axis + 2) % 3] = iv;
+        std::int16_t& depth = depth_[static_cast<std::size_t>((cell * strides_).sum())];
+        depth = static_cast<std::int16_t>(depth + sign);
+      });
     sum_along_axis();
   }
 
@@ -128,59 +135,6 @@ class View {
   }
 
  private:
-  static constexpr std::int64_t kUnit = 1024;
-  struct Point {
-    std::int64_t u, v;
-  };
-
-  std::size_t offset(const Array3i& cell) const { return static_cast<std::size_t>((cell * strides_).sum()); }
-
-  // Twice the signed area of abp.
-  static std::int64_t area(const Point& a, const Point& b, const Point& p) { return (b.u - a.u) * (p.v - a.v) - (b.v - a.v) * (p.u - a.u); }
-  // Lines exactly on an edge belong to the face for which the edge runs up, or flat to the left.
-  static bool owns(const Point& a, const Point& b) { return b.v > a.v || (b.v == a.v && b.u < a.u); }
-
-  static int first_line(std::int64_t low) { return static_cast<int>((low - kUnit / 2 + kUnit - 1) / kUnit); }
-  static int last_line(std::int64_t high) { return static_cast<int>((high - kUnit / 2) / kUnit); }
-
-  void add(const Corners& t) {
-    std::array<Point, 3> p;
-    std::array<float, 3> depth;
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = {std::llround(t[k][u_] * kUnit), std::llround(t[k][v_] * kUnit)};
-      depth[k] = t[k][axis_];
-    }
-    const std::int64_t whole = area(p[0], p[1], p[2]);
-    if (whole == 0) return;
-    const bool leaves = whole > 0;  // the normal looks along the axis
-    if (!leaves) {
-      std::swap(p[1], p[2]);
-      std::swap(depth[1], depth[2]);
-    }
-    const auto [low_u, high_u] = std::minmax({p[0].u, p[1].u, p[2].u});
-    const auto [low_v, high_v] = std::minmax({p[0].v, p[1].v, p[2].v});
-    for (int iu = first_line(low_u); iu <= last_line(high_u); ++iu)
-      for (int iv = first_line(low_v); iv <= last_line(high_v); ++iv) cross(p, depth, iu, iv, leaves ? -1 : 1);
-  }
-
-  void cross(const std::array<Point, 3>& p, const std::array<float, 3>& depth, int iu, int iv, int sign) {
-    const Point line{iu * kUnit + kUnit / 2, iv * kUnit + kUnit / 2};
-    std::array<std::int64_t, 3> w;  // opposite corner k
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Point &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
-      w[k] = area(a, b, line);
-      if (w[k] < 0 || (w[k] == 0 && !owns(a, b))) return;
-    }
-    const double whole = static_cast<double>(w[0] + w[1] + w[2]);
-    double at = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) at += static_cast<double>(w[k]) / whole * static_cast<double>(depth[k]);
-    Array3i cell;  // the first whose centre lies behind the face
-    cell[axis_] = std::clamp(static_cast<int>(std::ceil(at - 0.5)), 0, size_[axis_] - 1);
-    cell[u_] = iu;
-    cell[v_] = iv;
-    depth_[offset(cell)] = static_cast<std::int16_t>(depth_[offset(cell)] + sign);
-  }
-
   void sum_along_axis() {
     const std::size_t stride = static_cast<std::size_t>(strides_[axis_]), run = stride * static_cast<std::size_t>(size_[axis_]);
     for (std::size_t start = 0; start < depth_.size(); start += run)
@@ -188,7 +142,7 @@ class View {
   }
 
   Array3i size_, strides_;
-  int axis_, u_, v_;
+  int axis_;
   std::vector<std::int16_t> depth_;  // entries minus exits up to each cell's centre
 };
 

@@ -12,22 +12,6 @@ namespace {
 
 constexpr std::size_t kMostVertices = std::size_t{1} << 25;  // of all instances; a small file can name one mesh many times
 
-// File's world -> ours.
-Eigen::Affine3d import_transform(const Scene& scene, const LoadOptions& options) {
-  Eigen::Affine3d transform(Eigen::Scaling(options.scale ? static_cast<double>(*options.scale) : scene.metres_per_unit));
-  switch (options.up.value_or(scene.up)) {
-    case UpAxis::x:
-      transform.rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
-      break;
-    case UpAxis::y:
-      break;
-    case UpAxis::z:
-      transform.rotate(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
-      break;
-  }
-  return transform;
-}
-
 double size_of(const Scene::Mesh& mesh) {
   Eigen::AlignedBox3f box;
   for (const Vec3f& p : mesh.positions) box.extend(p);
@@ -182,6 +166,21 @@ class Assembler {
 };
 
 }  // namespace
+
+Eigen::Affine3d import_transform(const Scene& scene, const LoadOptions& options) {
+  Eigen::Affine3d transform(Eigen::Scaling(options.scale ? static_cast<double>(*options.scale) : scene.metres_per_unit));
+  switch (options.up.value_or(scene.up)) {
+    case UpAxis::x:
+      transform.rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+      break;
+    case UpAxis::y:
+      break;
+    case UpAxis::z:
+      transform.rotate(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
+      break;
+  }
+  return transform;
+}
 
 void to_our_world(Scene& scene, const LoadOptions& options) {
   const Eigen::Affine3d import = import_transform(scene, options);

@@ -14,6 +14,9 @@ namespace osteon::io {
 // On return the nodes' transforms in `scene` lead to our world.
 std::vector<PlacedInstance> assemble(Scene& scene, const LoadOptions& options, Asset& asset);
 
+// File's world -> ours: metres, y up.
+Eigen::Affine3d import_transform(const Scene& scene, const LoadOptions& options);
+
 // Makes the nodes' transforms lead to our world: metres, y up. assemble() does so first.
 void to_our_world(Scene& scene, const LoadOptions& options);
 

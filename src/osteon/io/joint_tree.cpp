@@ -135,6 +135,13 @@ class TreeBuilder {
 
 }  // namespace
 
+std::vector<std::optional<std::size_t>> nodes_of_joints(const JointTree& tree, std::size_t joints) {
+  std::vector<std::optional<std::size_t>> nodes(joints);
+  for (std::size_t n = 0; n < tree.joint_of_node.size(); ++n)
+    if (const auto& joint = tree.joint_of_node[n]) nodes[index(*joint)] = n;
+  return nodes;
+}
+
 std::optional<JointTree> joint_tree(const Scene& scene, std::vector<std::string>& repairs) {
   return TreeBuilder(scene, repairs).build(joint_nodes(scene));
 }

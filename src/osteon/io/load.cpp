@@ -104,16 +104,23 @@ Asset load(const std::filesystem::path& path, const LoadOptions& options) {
   });
 }
 
-Skeleton load_skeleton(const std::filesystem::path& path, const LoadOptions& options) {
+SkeletonFile load_skeleton_file(const std::filesystem::path& path, const LoadOptions& options) {
   return naming(path, [&] {
     Loose loose = read(path);
+    const Eigen::Affine3d to_world = import_transform(loose.scene, options);
     to_our_world(loose.scene, options);
     auto joints = joint_tree(loose.scene, loose.repairs);
     if (!joints) joints = joint_tree_of_nodes(loose.scene, loose.repairs);
     if (!joints) throw Error("no joints");
     validate(joints->skeleton);
-    return std::move(joints->skeleton);
+    SkeletonFile out{std::move(joints->skeleton), nullptr};
+    if (loose.source.gltf)
+      out.source = std::make_shared<const SkeletonSource>(
+          SkeletonSource{std::move(loose.source.gltf->document), nodes_of_joints(*joints, out.skeleton.size()), to_world});
+    return out;
   });
 }
+
+Skeleton load_skeleton(const std::filesystem::path& path, const LoadOptions& options) { return load_skeleton_file(path, options).skeleton; }
 
 }  // namespace osteon::io

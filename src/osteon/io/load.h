@@ -41,4 +41,13 @@ Asset load(const std::filesystem::path& path, const LoadOptions& options = {});
 // The joints of a GLB, glTF, FBX, DAE or rig.txt alone; throws Error if there are none.
 Skeleton load_skeleton(const std::filesystem::path& path, const LoadOptions& options = {});
 
+struct SkeletonSource;  // see source_document.h
+
+// A skeleton, and what save_glb needs to write it as it came.
+struct SkeletonFile {
+  Skeleton skeleton;                             // as load_skeleton gives it
+  std::shared_ptr<const SkeletonSource> source;  // null where the file is no glTF
+};
+SkeletonFile load_skeleton_file(const std::filesystem::path& path, const LoadOptions& options = {});
+
 }  // namespace osteon::io

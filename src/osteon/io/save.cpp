@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/io/save.h"
 
+#include <cassert>
 #include <charconv>
 
 #include "osteon/base/error.h"
@@ -18,6 +19,24 @@ void check(const Asset& asset, const Skeleton& skeleton, const SkinWeights& weig
     throw Error("max_influences is {}, expected 1 to 8", options.max_influences);
 }
 
+// The document of the asset, or a new one, given its rig by attach(document, instances, changes).
+template <class Attach>
+std::vector<std::string> save_document(const std::filesystem::path& path, const Asset& asset, std::size_t joints, const Attach& attach) {
+  std::vector<std::string> changes;
+  try {
+    const bool from_gltf = asset.source && asset.source->gltf;
+    const Appearance appearance = asset.source && asset.source->appearance ? *asset.source->appearance : Appearance{};
+    const std::string name = asset.path.empty() ? "character" : asset.path.stem().string();
+    GltfSource document = from_gltf ? *asset.source->gltf : gltf::fresh_document(name, asset.mesh, appearance, changes);
+    attach(document, from_gltf ? asset.source->instances : gltf::fresh_instances(), changes);
+    if (joints > 254) changes.push_back(fmt::format("{} joints; viewers on Android show at most 254", joints));
+    gltf::write_glb(path, document.document);
+  } catch (const gltf::Json::exception& e) {  // parts of the document that reading the mesh had no need to look at
+    throw Error("{}: malformed glTF: {}", asset.path.filename().string(), e.what());
+  }
+  return changes;
+}
+
 void append_number(std::string& text, float value) {
   char buffer[32];
   const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);  // shortest text that reads back the same
@@ -30,20 +49,36 @@ void append_number(std::string& text, float value) {
 std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const Skeleton& skeleton,
                                   const SkinWeights& weights, const SaveOptions& options) {
   check(asset, skeleton, weights, options);
-  std::vector<std::string> changes;
-  try {
-    const bool from_gltf = asset.source && asset.source->gltf;
-    const Appearance appearance = asset.source && asset.source->appearance ? *asset.source->appearance : Appearance{};
-    const std::string name = asset.path.empty() ? "character" : asset.path.stem().string();
-    GltfSource document = from_gltf ? *asset.source->gltf : gltf::fresh_document(name, asset.mesh, appearance, changes);
-    gltf::attach_rig(document, from_gltf ? asset.source->instances : gltf::fresh_instances(), asset.mesh, skeleton, weights, options,
-                     changes);
-    if (skeleton.size() > 254) changes.push_back(fmt::format("{} joints; viewers on Android show at most 254", skeleton.size()));
-    gltf::write_glb(path, document.document);
-  } catch (const gltf::Json::exception& e) {  // parts of the document that reading the mesh had no need to look at
-    throw Error("{}: malformed glTF: {}", asset.path.filename().string(), e.what());
+  return save_document(path, asset, skeleton.size(), [&](GltfSource& document, const auto& instances, auto& changes) {
+    gltf::attach_rig(document, instances, asset.mesh, skeleton, weights, options, changes);
+  });
+}
+
+std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const SkeletonFile& skeleton,
+                                  const Eigen::Affine3d& fit, const SkinWeights& weights, SaveOptions options) {
+  if (!skeleton.source) {
+    options.names = JointNames::as_given;
+    return save_glb(path, asset, transformed(skeleton.skeleton, fit), weights, options);
   }
-  return changes;
+  check(asset, skeleton.skeleton, weights, options);
+  return save_document(path, asset, skeleton.skeleton.size(), [&](GltfSource& document, const auto& instances, auto& changes) {
+    gltf::attach_rig(document, instances, asset.mesh, skeleton, fit, weights, options, changes);
+  });
+}
+
+std::vector<std::string> save_weights(const std::filesystem::path& path, const Asset& asset, const SkinWeights& weights,
+                                      const SaveOptions& options) {
+  assert(asset.skeleton);
+  check(asset, *asset.skeleton, weights, options);
+  const bool from_gltf = asset.source && asset.source->gltf;
+  if (!from_gltf || !gltf::can_replace_weights(*asset.source->gltf, asset.source->instances)) {
+    SaveOptions as_given = options;
+    as_given.names = JointNames::as_given;
+    return save_glb(path, asset, *asset.skeleton, weights, as_given);
+  }
+  return save_document(path, asset, asset.skeleton->size(), [&](GltfSource& document, const auto& instances, auto& changes) {
+    gltf::replace_weights(document, instances, asset.mesh, weights, options, changes);
+  });
 }
 
 void save_obj(const std::filesystem::path& path, const TriangleMesh& mesh) {

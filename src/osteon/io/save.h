@@ -18,10 +18,17 @@ enum class Vertices {
   bake,  // vertices are rewritten in world space
 };
 
+// What becomes of joint names that some program does not accept.
+enum class JointNames {
+  portable,  // ASCII without ':' and '/', different from those of all other nodes
+  as_given,
+};
+
 struct SaveOptions {
   int max_influences = 4;  // joints per vertex, 1..8; above 4 a second set of attributes is written (JOINTS_1)
   WeightFormat weights = WeightFormat::f32;
   Vertices vertices = Vertices::keep;
+  JointNames names = JointNames::portable;
 };
 
 // Writes `asset` with the given skeleton and weights (one row per vertex of asset.mesh) as a GLB.
@@ -31,6 +38,18 @@ struct SaveOptions {
 // Throws Error if the file cannot be written or the rig breaks an invariant.
 std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const Skeleton& skeleton,
                                   const SkinWeights& weights, const SaveOptions& options = {});
+
+// The same with the skeleton of another file, moved by `fit` (a similarity, y up and metres on both sides). A skeleton from glTF goes in
+// with its nodes as they were: names, order, transforms and extras bit by bit; what `fit` asks for is done by one node above them.
+// Otherwise, and where `fit` is the identity, joint names are as given.
+std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const SkeletonFile& skeleton,
+                                  const Eigen::Affine3d& fit, const SkinWeights& weights, SaveOptions options = {});
+
+// Writes an asset that came from glTF with other weights for the skeleton that it has: everything else, joints, inverse bind matrices and
+// animations too, stays as it was. Returns what had to be changed beyond that; a skin that lacks joints which the weights need gets them at
+// its end. Pre: asset.skeleton is there.
+std::vector<std::string> save_weights(const std::filesystem::path& path, const Asset& asset, const SkinWeights& weights,
+                                      const SaveOptions& options = {});
 
 // The mesh alone: `v` and `f` lines, vertices and faces in order.
 void save_obj(const std::filesystem::path& path, const TriangleMesh& mesh);

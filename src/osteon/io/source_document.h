@@ -56,4 +56,11 @@ struct SourceDocument {
   std::vector<PlacedInstance> instances;
 };
 
+// The glTF that a skeleton came from.
+struct SkeletonSource {
+  gltf::Document document;
+  std::vector<std::optional<std::size_t>> node_of_joint;   // by JointId; empty for a root that the file did not have
+  Eigen::Affine3d to_world = Eigen::Affine3d::Identity();  // of the file -> ours
+};
+
 }  // namespace osteon::io

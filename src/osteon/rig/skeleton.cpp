@@ -99,6 +99,14 @@ Skeleton turned(Skeleton skeleton, const Eigen::Matrix3f& rotation) {
   return skeleton;
 }
 
+Skeleton transformed(Skeleton skeleton, const Eigen::Affine3d& similarity) {
+  if (similarity.matrix().isIdentity(0.0)) return skeleton;
+  const Eigen::Quaterniond turn(similarity.rotation());
+  for (Vec3f& p : skeleton.rest_positions) p = (similarity * p.cast<double>()).cast<float>();
+  for (Quatf& q : skeleton.rest_orientations) q = (turn * q.cast<double>()).normalized().cast<float>().normalized();
+  return skeleton;
+}
+
 std::vector<Bone> bones(const Skeleton& skeleton) {
   const auto kids = children(skeleton);
   const auto& at = skeleton.rest_positions;

@@ -40,6 +40,9 @@ void orient_along_bones(Skeleton& skeleton);
 // Turned about the origin, joint axes included.
 Skeleton turned(Skeleton skeleton, const Eigen::Matrix3f& rotation);
 
+// Moved by a similarity; joint axes turn with it.
+Skeleton transformed(Skeleton skeleton, const Eigen::Affine3d& similarity);
+
 // A bone: the segment from a joint to one of its children, or the point at a leaf joint (RigNet, sec. 4.3; facts 7.1).
 // The skin weight of a bone belongs to its start joint.
 struct Bone {

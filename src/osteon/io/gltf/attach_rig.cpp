@@ -8,6 +8,7 @@
 #include "osteon/io/gltf/import.h"
 #include "osteon/io/gltf/joint_nodes.h"
 #include "osteon/io/gltf/old_rig.h"
+#include "osteon/io/gltf/own_joints.h"
 #include "osteon/io/gltf/references.h"
 #include "osteon/io/gltf/single_buffer.h"
 #include "osteon/io/gltf/skin_attributes.h"
@@ -36,6 +37,17 @@ std::optional<Eigen::Affine3d> shared_transform(const std::vector<PlacedInstance
   return shared;
 }
 
+SkinWeights renumbered(const SkinWeights& weights, const std::vector<JointId>& number) {
+  SkinWeights out;
+  std::vector<Influence> row;
+  for (const VertexId v : ids<VertexId>(weights.size())) {
+    row.assign(weights[v].begin(), weights[v].end());
+    for (Influence& i : row) i.joint = number[index(i.joint)];
+    out.append(row);
+  }
+  return out;
+}
+
 class RigAttachment {
  public:
   RigAttachment(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const Skeleton& skeleton,
@@ -47,7 +59,36 @@ class RigAttachment {
         skeleton_(skeleton),
         weights_(weights),
         options_(options),
-        changes_(changes) {}
+        changes_(changes),
+        joint_count_(skeleton.size()) {}
+
+  // Where the joints come from, if not from `skeleton`.
+  void use_nodes_of(const SkeletonSource& joints, const Eigen::Affine3d& fit) {
+    nodes_of_ = &joints;
+    fit_ = fit;
+    weights_ = renumbered(weights_, places_in_skin(joints));
+  }
+
+  // The joints and all else stay as they are.
+  void run_with_own_joints() {
+    join_buffers(document_, changes_);
+    const Usage before = usage();
+    std::vector<std::string> told_at_load;
+    const Scene scene = import_scene(document_, told_at_load).scene;
+    const OwnJoints joints(document_, scene, told_at_load);
+    const SkinWeights all = weights_;
+    Writer writer(document_);
+    for (std::size_t i = 0; i < instances_.size(); ++i) {
+      const Scene::Instance& instance = instances_[i].instance;
+      const OwnJoints::Places places = joints.complete(writer, document_, instance, used_joints(i, all), changes_);
+      weights_ = renumbered(all, places.of_joint);
+      joint_count_ = places.count;
+      attach(writer, scene, i, instance.node, false);
+      document_.json["nodes"][instance.node]["skin"] = places.skin;
+    }
+    Cleared nothing{{}, std::vector<bool>(document_.count("nodes")), std::vector<bool>(document_.count("skins")), {}};
+    remove_what_became_unused(nothing, before);
+  }
 
   void run() {
     join_buffers(document_, changes_);
@@ -58,8 +99,7 @@ class RigAttachment {
     const auto bind = shared_transform(instances_, source_.layouts, options_.vertices);
     Writer writer(document_);
     for (std::size_t i = 0; i < instances_.size(); ++i) attach(writer, scene, i, cleared.mesh_nodes[i], !bind);
-    const JointNodes joints =
-        add_joint_nodes(writer, document_, skeleton_, bind.value_or(Eigen::Affine3d::Identity()), node_names(cleared), changes_);
+    const JointNodes joints = add_joints(writer, bind.value_or(Eigen::Affine3d::Identity()), cleared);
     for (const std::size_t n : cleared.mesh_nodes)
       if (document_.json["nodes"][n].contains("mesh")) document_.json["nodes"][n]["skin"] = joints.skin;
     for (std::size_t s = 0; s < cleared.scenes_with_mesh.size(); ++s)
@@ -75,6 +115,22 @@ class RigAttachment {
     Usage out;
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = used_items(document_, kKinds[k]);
     return out;
+  }
+
+  JointNodes add_joints(Writer& writer, const Eigen::Affine3d& bind, const Cleared& cleared) {
+    if (nodes_of_) return copy_joint_nodes(writer, document_, *nodes_of_, fit_, bind);
+    return add_joint_nodes(writer, document_, skeleton_, bind, options_.names, node_names(cleared), changes_);
+  }
+
+  std::vector<bool> used_joints(std::size_t i, const SkinWeights& weights) const {
+    std::vector<bool> used;
+    for (const MeshLayout::Block& block : source_.layouts[instances_[i].instance.mesh].blocks)
+      for (const VertexId v : vertices_of(instances_[i], block))
+        for (const Influence& influence : weights[v]) {
+          used.resize(std::max(used.size(), index(influence.joint) + 1), false);
+          used[index(influence.joint)] = true;
+        }
+    return used;
   }
 
   VertexId asset_vertex(std::size_t document_vertex) const {
@@ -107,7 +163,7 @@ class RigAttachment {
       const bool mirrored = placed.to_world && placed.to_world->linear().determinant() < 0.0;
       if (part.faces_dropped || (rewrite && mirrored && part.face_count > 0)) rewrite_faces(writer, primitive, placed, part, block);
       if (skin_attributes[*part.block].is_null())
-        skin_attributes[*part.block] = add_skin_attributes(writer, vertices, weights_, skeleton_.size(), options_);
+        skin_attributes[*part.block] = add_skin_attributes(writer, vertices, weights_, joint_count_, options_);
       replace_skin(primitive.at("attributes"), skin_attributes[*part.block]);
       primitives.push_back(std::move(primitive));
     }
@@ -192,14 +248,36 @@ class RigAttachment {
   Document& document_;
   const std::vector<PlacedInstance>& instances_;
   const TriangleMesh& mesh_;
-  const Skeleton& skeleton_;
-  const SkinWeights& weights_;
+  const Skeleton skeleton_;
+  SkinWeights weights_;  // joints numbered as in the skin that is written
   const SaveOptions& options_;
   std::vector<std::string>& changes_;
   std::vector<Json> originals_;
+  std::size_t joint_count_;  // of that skin
+  const SkeletonSource* nodes_of_ = nullptr;
+  Eigen::Affine3d fit_ = Eigen::Affine3d::Identity();
 };
 
 }  // namespace
+
+bool can_replace_weights(const GltfSource& source, const std::vector<PlacedInstance>& instances) {
+  return std::ranges::all_of(instances, [&](const PlacedInstance& placed) {
+    const auto& blocks = source.layouts[placed.instance.mesh].blocks;
+    return placed.to_world && std::ranges::none_of(blocks, [](const auto& b) { return b.repaired; });
+  });
+}
+
+void replace_weights(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const SkinWeights& weights,
+                     const SaveOptions& options, std::vector<std::string>& changes) {
+  RigAttachment(source, instances, mesh, {}, weights, options, changes).run_with_own_joints();
+}
+
+void attach_rig(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const SkeletonFile& skeleton,
+                const Eigen::Affine3d& fit, const SkinWeights& weights, const SaveOptions& options, std::vector<std::string>& changes) {
+  RigAttachment attachment(source, instances, mesh, skeleton.skeleton, weights, options, changes);
+  attachment.use_nodes_of(*skeleton.source, fit);
+  attachment.run();
+}
 
 void attach_rig(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const Skeleton& skeleton,
                 const SkinWeights& weights, const SaveOptions& options, std::vector<std::string>& changes) {

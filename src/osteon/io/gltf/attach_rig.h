@@ -12,4 +12,14 @@ namespace osteon::io::gltf {
 void attach_rig(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const Skeleton& skeleton,
                 const SkinWeights& weights, const SaveOptions& options, std::vector<std::string>& changes);
 
+// The same with the nodes of the file that the skeleton came from, placed by `fit`.
+void attach_rig(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const SkeletonFile& skeleton,
+                const Eigen::Affine3d& fit, const SkinWeights& weights, const SaveOptions& options, std::vector<std::string>& changes);
+
+// Gives the meshes of `source` other weights for the joints that it has; nothing else changes, but that a skin gets the joints that it
+// lacks. Pre: the document was read as `instances`, all in their bind pose or without skin (see can_replace_weights).
+void replace_weights(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const SkinWeights& weights,
+                     const SaveOptions& options, std::vector<std::string>& changes);
+bool can_replace_weights(const GltfSource& source, const std::vector<PlacedInstance>& instances);
+
 }  // namespace osteon::io::gltf

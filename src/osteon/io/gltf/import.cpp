@@ -13,24 +13,6 @@ namespace {
 
 // Node transforms --------------------------------------------------------------------------------------------------------------------
 
-Eigen::Affine3d local_transform(const Element& node) {
-  Eigen::Affine3d local = Eigen::Affine3d::Identity();
-  if (const auto matrix = node.find("matrix")) {
-    local.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix->numbers<16>().data());
-    local.makeAffine();
-    return local;
-  }
-  if (const auto t = node.find("translation")) local.translate(Eigen::Map<const Eigen::Vector3d>(t->numbers<3>().data()));
-  if (const auto r = node.find("rotation")) {
-    const auto [x, y, z, w] = r->numbers<4>();
-    const Eigen::Quaterniond rotation(w, x, y, z);
-    if (rotation.norm() < 1e-6) throw Error("{}: zero, expected a unit quaternion", r->where());
-    local.rotate(rotation.normalized());
-  }
-  if (const auto s = node.find("scale")) local.scale(Eigen::Map<const Eigen::Vector3d>(s->numbers<3>().data()));
-  return local;
-}
-
 std::vector<std::size_t> parentless(const std::vector<Element>& nodes) {
   std::vector<bool> is_child(nodes.size());
   for (const Element& node : nodes)
@@ -256,6 +238,24 @@ Scene::Skin read_skin(const Document& document, const Element& element) {
 }
 
 }  // namespace
+
+Eigen::Affine3d local_transform(const Element& node) {
+  Eigen::Affine3d local = Eigen::Affine3d::Identity();
+  if (const auto matrix = node.find("matrix")) {
+    local.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix->numbers<16>().data());
+    local.makeAffine();
+    return local;
+  }
+  if (const auto t = node.find("translation")) local.translate(Eigen::Map<const Eigen::Vector3d>(t->numbers<3>().data()));
+  if (const auto r = node.find("rotation")) {
+    const auto [x, y, z, w] = r->numbers<4>();
+    const Eigen::Quaterniond rotation(w, x, y, z);
+    if (rotation.norm() < 1e-6) throw Error("{}: zero, expected a unit quaternion", r->where());
+    local.rotate(rotation.normalized());
+  }
+  if (const auto s = node.find("scale")) local.scale(Eigen::Map<const Eigen::Vector3d>(s->numbers<3>().data()));
+  return local;
+}
 
 Imported import_scene(const Document& document, std::vector<std::string>& repairs) {
   Imported imported;

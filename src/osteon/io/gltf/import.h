@@ -16,4 +16,7 @@ struct Imported {
 // primitives without positions are left out and said so in `repairs`. Throws Error naming the element for a broken reference or accessor.
 Imported import_scene(const Document& document, std::vector<std::string>& repairs);
 
+// node -> its parent.
+Eigen::Affine3d local_transform(const Element& node);
+
 }  // namespace osteon::io::gltf

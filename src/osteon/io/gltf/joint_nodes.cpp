@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/io/gltf/joint_nodes.h"
 
+#include <cmath>
+
 #include "osteon/base/error.h"
+#include "osteon/io/gltf/import.h"
 
 namespace osteon::io::gltf {
 namespace {
@@ -52,11 +55,55 @@ struct Local {
   }
 };
 
+// The joints, what stands above them and what hangs below.
+std::vector<bool> around_joints(const Scene& scene, const SkeletonSource& skeleton) {
+  std::vector<bool> wanted(scene.nodes.size(), false), is_joint(scene.nodes.size(), false);
+  for (const auto& node : skeleton.node_of_joint) {
+    if (node) is_joint[*node] = true;
+    for (std::optional<std::size_t> n = node; n && !wanted[*n]; n = scene.nodes[*n].parent) wanted[*n] = true;
+  }
+  for (std::size_t leaf = 0; leaf < wanted.size(); ++leaf) {
+    std::vector<std::size_t> path;
+    for (std::optional<std::size_t> n = leaf; n; n = scene.nodes[*n].parent) {
+      if (is_joint[*n])
+        for (const std::size_t below : path) wanted[below] = true;
+      path.push_back(*n);
+    }
+  }
+  return wanted;
+}
+
+Json stripped_node(Json node, const std::vector<bool>& wanted, const std::vector<std::size_t>& copy_of) {
+  for (const char* key : {"mesh", "skin", "camera", "weights", "extensions"}) node.erase(key);
+  if (!node.contains("children")) return node;
+  Json children = Json::array();
+  for (const Json& child : node["children"])
+    if (const auto c = child.get<std::size_t>(); wanted.at(c)) children.push_back(copy_of[c]);
+  if (children.empty())
+    node.erase("children");
+  else
+    node["children"] = std::move(children);
+  return node;
+}
+
+Json fitted_node(const std::string& name, const Eigen::Affine3d& fit, const std::vector<std::size_t>& children) {
+  const double scale = std::cbrt(fit.linear().determinant());
+  const Eigen::Quaternionf q = Eigen::Quaterniond(fit.linear() / scale).normalized().cast<float>();
+  const Vec3f t = fit.translation().cast<float>();
+  const auto s = static_cast<float>(scale);
+  return Json{{"name", name},
+              {"children", children},
+              {"translation", {t.x(), t.y(), t.z()}},
+              {"rotation", {q.x(), q.y(), q.z(), q.w()}},
+              {"scale", {s, s, s}}};
+}
+
 }  // namespace
 
-JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& skeleton, const Eigen::Affine3d& bind,
+JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& skeleton, const Eigen::Affine3d& bind, JointNames naming,
                            std::set<std::string> names, std::vector<std::string>& changes) {
-  const std::vector<std::string> joint_names = portable_names(skeleton, std::move(names), changes);
+  const std::vector<std::string> joint_names =
+      naming == JointNames::portable ? portable_names(skeleton, std::move(names), changes) : skeleton.names.raw();
   const std::size_t first = document.count("nodes");
   PerJoint<Eigen::Affine3d> worlds;  // as the file has them: errors of rounding do not add up along a chain
   std::vector<float> inverse_binds;
@@ -79,6 +126,51 @@ JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& s
   Json& skins = document.json["skins"];
   skins.push_back(Json{{"inverseBindMatrices", matrices}, {"joints", joints}, {"skeleton", first}});
   return {first, skins.size() - 1};
+}
+
+std::vector<JointId> places_in_skin(const SkeletonSource& skeleton) {
+  std::vector<JointId> places;
+  std::uint16_t next = 0;
+  for (const auto& node : skeleton.node_of_joint) places.push_back(JointId{node ? next++ : std::uint16_t{0}});
+  return places;
+}
+
+JointNodes copy_joint_nodes(Writer& writer, Document& document, const SkeletonSource& skeleton, const Eigen::Affine3d& fit,
+                            const Eigen::Affine3d& bind) {
+  std::vector<std::string> told_at_load;
+  const Scene scene = import_scene(skeleton.document, told_at_load).scene;
+  const std::vector<bool> wanted = around_joints(scene, skeleton);
+  std::vector<std::size_t> copy_of(scene.nodes.size());
+  std::size_t next = document.count("nodes");
+  for (std::size_t n = 0; n < wanted.size(); ++n)
+    if (wanted[n]) copy_of[n] = next++;
+  Json& nodes = document.json["nodes"];
+  std::vector<std::size_t> roots;
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    if (!wanted[n]) continue;
+    nodes.push_back(stripped_node(skeleton.document.json["nodes"][n], wanted, copy_of));
+    if (!scene.nodes[n].parent) roots.push_back(copy_of[n]);
+  }
+  const Eigen::Affine3d placed = fit * skeleton.to_world;
+  std::size_t root = roots.front();
+  Eigen::Affine3d above = Eigen::Affine3d::Identity();
+  if (roots.size() > 1 || !placed.matrix().isIdentity(0.0)) {
+    const Json node = fitted_node(skeleton.document.path.stem().string() + " fitted", placed, roots);
+    nodes.push_back(node);
+    above = local_transform(Element(node, "node"));
+    root = nodes.size() - 1;
+  }
+  std::vector<float> inverse_binds;
+  Json joints = Json::array();
+  for (const auto& n : skeleton.node_of_joint) {
+    if (!n) continue;
+    joints.push_back(copy_of[*n]);
+    const Eigen::Matrix4f inverse = ((above * scene.nodes[*n].world).inverse() * bind).matrix().cast<float>();
+    inverse_binds.insert(inverse_binds.end(), inverse.data(), inverse.data() + 16);
+  }
+  const std::size_t matrices = writer.vectors(inverse_binds, 16, Target::none);
+  document.json["skins"].push_back(Json{{"inverseBindMatrices", matrices}, {"joints", joints}});
+  return {root, document.json["skins"].size() - 1};
 }
 
 }  // namespace osteon::io::gltf

@@ -4,6 +4,8 @@
 #include <set>
 
 #include "osteon/io/gltf/writer.h"
+#include "osteon/io/save.h"
+#include "osteon/io/source_document.h"
 #include "osteon/rig/skeleton.h"
 
 namespace osteon::io::gltf {
@@ -14,9 +16,17 @@ struct JointNodes {
 };
 
 // Appends a node for each joint and a skin of them all. `bind` brings the vertices to world space before the joints move them.
-// `names` are those that other nodes have; a joint that cannot keep its name (taken; not ASCII; ':' or '/', which Godot does not accept)
-// gets another one, and `changes` says so.
-JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& skeleton, const Eigen::Affine3d& bind,
+// `names` are those that other nodes have. With portable naming a joint that cannot keep its name (taken; not ASCII; ':' or '/', which
+// Godot does not accept) gets another one, and `changes` says so.
+JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& skeleton, const Eigen::Affine3d& bind, JointNames naming,
                            std::set<std::string> names, std::vector<std::string>& changes);
+
+// The same with the nodes of the skeleton's own file, copied as they are with all that stands above and below the joints (but no meshes and
+// cameras), in the order of the file. A node above them applies `fit` where it is not the identity, or where there are several roots.
+JointNodes copy_joint_nodes(Writer& writer, Document& document, const SkeletonSource& skeleton, const Eigen::Affine3d& fit,
+                            const Eigen::Affine3d& bind);
+
+// Which place in the skin of copy_joint_nodes each joint has; joints without a node have that of the first.
+std::vector<JointId> places_in_skin(const SkeletonSource& skeleton);
 
 }  // namespace osteon::io::gltf

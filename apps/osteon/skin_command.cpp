@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "commands.h"
+#include "load_options.h"
+#include "model_options.h"
+#include "osteon/io/save.h"
+#include "osteon/pipelines/skeleton_fit.h"
+#include "osteon/pipelines/skin_character.h"
+#include "preview.h"
+#include "rigged_file.h"
+#include "skin_report.h"
+
+namespace osteon::app {
+namespace {
+
+const std::map<std::string, skin::Method> kMethods{{"rigid", skin::Method::rigid},
+                                                   {"geovoxel", skin::Method::geovoxel},
+                                                   {"heat", skin::Method::heat},
+                                                   {"biharmonic", skin::Method::biharmonic},
+                                                   {"transfer", skin::Method::transfer}};
+
+struct SkinArguments {
+  std::filesystem::path input, output;
+  std::optional<std::filesystem::path> skeleton, from, preview, report;
+  std::string method = "geovoxel";
+  std::vector<std::string> locked;
+  bool deform_islands = false;
+  ModelOptions models;
+  io::LoadOptions load;
+  io::SaveOptions save;
+  pipelines::SkinCharacterOptions options;
+};
+
+void warn(const std::filesystem::path& file, const std::vector<std::string>& messages) {
+  for (const std::string& message : messages) spdlog::warn("{}: {}", file.string(), message);
+}
+
+// The skeleton to bind to, in its own file's space, and how it comes to the body.
+struct Chosen {
+  io::SkeletonFile file;
+  pipelines::SkeletonFit fit;
+  bool is_own = false;  // of the body's file
+
+  Skeleton in_place() const { return transformed(file.skeleton, fit.to_body); }
+};
+
+Chosen choose_skeleton(const SkinArguments& arguments, const io::Asset& body) {
+  if (!arguments.skeleton) {
+    if (!body.skeleton) throw Error("{}: has no skeleton; expected one, or --skeleton FILE", arguments.input.string());
+    return {{*body.skeleton, nullptr}, {}, true};
+  }
+  Chosen chosen{io::load_skeleton_file(*arguments.skeleton), {}, false};
+  chosen.fit = pipelines::fit_skeleton(chosen.file.skeleton, body.mesh);
+  if (!chosen.fit.note.empty()) spdlog::warn("{}: {}", arguments.skeleton->string(), chosen.fit.note);
+  return chosen;
+}
+
+JointId joint_named(const Skeleton& skeleton, const std::string& name) {
+  const auto found = std::ranges::find(skeleton.names, name);
+  if (found == skeleton.names.end()) throw Error("--lock {}: the skeleton has no joint of that name", name);
+  return static_cast<JointId>(found - skeleton.names.begin());
+}
+
+void lock_joints(const SkinArguments& arguments, const io::Asset& body, const Skeleton& skeleton, skin::BindOptions& bind) {
+  if (arguments.locked.empty()) return;
+  if (!body.weights || !body.skeleton) throw Error("--lock: {} has no skin weights to keep", arguments.input.string());
+  for (const std::string& name : arguments.locked) {
+    joint_named(*body.skeleton, name);
+    bind.locked.push_back(joint_named(skeleton, name));
+  }
+  const PerJoint<JointId> number = skin::joints_by_name(*body.skeleton, skeleton);
+  SkinWeights before;
+  for (VertexId v : body.mesh.positions.ids()) {
+    std::vector<Influence> row((*body.weights)[v].begin(), (*body.weights)[v].end());
+    for (Influence& i : row) i.joint = number[i.joint];
+    before.append(row);
+  }
+  bind.before = std::move(before);
+}
+
+skin::Binding bound(const SkinArguments& arguments, const io::Asset& body, const Skeleton& skeleton) {
+  pipelines::SkinCharacterOptions options = arguments.options;
+  options.bind.max_influences = static_cast<std::size_t>(arguments.save.max_influences);
+  if (arguments.deform_islands) options.bind.islands = skin::Islands::deform;
+  lock_joints(arguments, body, skeleton, options.bind);
+  if (arguments.from) options.bind.from = load_rig(*arguments.from);
+  if (arguments.method == "rignet") {
+    const infer::RignetModels models = arguments.models.load();
+    options.rignet = &models;
+    return pipelines::skin_character(body.mesh, skeleton, options);
+  }
+  options.bind.method = kMethods.at(arguments.method);
+  return pipelines::skin_character(body.mesh, skeleton, options);
+}
+
+void check(const SkinArguments& arguments) {
+  if ((arguments.method == "transfer") != arguments.from.has_value())
+    throw Error("--method {}: {}", arguments.method,
+                arguments.from ? "--from is for --method transfer" : "needs --from FILE, the rigged reference");
+}
+
+void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Binding& binding, const Chosen& chosen) {
+  nlohmann::ordered_json json{{"osteon", OSTEON_VERSION},
+                              {"input", arguments.input.string()},
+                              {"method", arguments.method},
+                              {"vertices", rig.mesh.positions.size()},
+                              {"joints", rig.skeleton.size()},
+                              {"skeleton_fit", chosen.fit.note},
+                              {"rigid_islands", binding.rigid_islands}};
+  json.update(to_json(pipelines::skin_quality(rig), rig.skeleton));
+  json["notes"] = binding.notes;
+  json["repairs"] = binding.repairs;
+  write_json(*arguments.report, json);
+}
+
+void skin_body(const SkinArguments& arguments) {
+  check(arguments);
+  const io::Asset body = io::load(arguments.input, arguments.load);
+  warn(arguments.input, body.repairs);
+  const Chosen chosen = choose_skeleton(arguments, body);
+  Rig rig{body.mesh, chosen.in_place(), {}};
+  const skin::Binding binding = bound(arguments, body, rig.skeleton);
+  rig.weights = binding.weights;
+  warn(arguments.input, binding.notes);
+  warn(arguments.output, chosen.is_own
+                             ? io::save_weights(arguments.output, body, rig.weights, arguments.save)
+                             : io::save_glb(arguments.output, body, chosen.file, chosen.fit.to_body, rig.weights, arguments.save));
+  if (arguments.report) save_report(arguments, rig, binding, chosen);
+  if (arguments.preview) save_preview(*arguments.preview, rig.mesh, &rig.skeleton, &rig.weights, 1);
+  spdlog::info("{}: {} vertices bound to {} joints ({})", arguments.output.string(), rig.mesh.positions.size(), rig.skeleton.size(),
+               arguments.method);
+}
+
+void add_method_options(CLI::App& command, SkinArguments& arguments) {
+  std::vector<std::string> names{"rignet"};
+  for (const auto& [name, method] : kMethods) names.push_back(name);
+  command
+      .add_option("--method", arguments.method,
+                  "How to bind: geodesic voxels, bone heat, biharmonic, nearest bone, another mesh's weights, or networks")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  command.add_option("--from", arguments.from, "For --method transfer: the rigged mesh whose weights to take")->type_name("FILE");
+  auto& bind = arguments.options.bind;
+  command.add_option("--smooth", bind.smooth, "Rounds of smoothing (default: what suits the method)")->check(CLI::Range(0, 100));
+  command.add_option("--prune", bind.prune_share, "Weights below this share of a vertex's largest go")
+      ->check(CLI::Range(0.0f, 1.0f))
+      ->capture_default_str();
+  command.add_option("--max-influences", arguments.save.max_influences, "Joints that may move one vertex")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command.add_option("--lock", arguments.locked, "Joints that keep the weights they have in the input, separated by commas")
+      ->delimiter(',')
+      ->type_name("JOINT");
+  command.add_flag("--mirror", arguments.options.mirror, "Make the halves of a symmetric character equal");
+  command.add_flag("--deform-islands", arguments.deform_islands, "Let small separate parts (buttons, eyes) bend, too");
+}
+
+}  // namespace
+
+void add_skin_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("skin", "Bind a mesh to a skeleton that is there already");
+  auto arguments = std::make_shared<SkinArguments>();
+  command->add_option("input", arguments->input, "The character: GLB, glTF, OBJ, PLY, STL, FBX, DAE, rig.txt or 3DS")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--skeleton", arguments->skeleton, "The skeleton, any of these formats (default: the character's own)")
+      ->type_name("FILE");
+  command->add_option("-o,--output", arguments->output, "The GLB to write")->required()->type_name("FILE");
+  command->add_option("--preview", arguments->preview, "Also draw a picture (PNG)")->type_name("FILE");
+  command->add_option("--report", arguments->report, "Also write coverage, leak, smoothness, symmetry and deformation (JSON)")
+      ->type_name("FILE");
+  add_method_options(*command, *arguments);
+  add_load_options(*command, arguments->load);
+  arguments->models.add_to(*command);
+  command->callback([arguments] { skin_body(*arguments); });
+}
+
+}  // namespace osteon::app

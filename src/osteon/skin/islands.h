@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "osteon/mesh/triangle_mesh.h"
+#include "osteon/skin/weight_rows.h"
+
+namespace osteon::skin {
+
+struct IslandOptions {
+  float largest = 0.5f;  // diagonal of an island's bounding box, in parts of the whole mesh's: larger ones bend
+  float main = 0.4f;     // share of an island's weight that its joint needs, else it bends,
+  float second = 0.6f;   // and the most that any other joint may have, in parts of that
+};
+
+// Small parts that hang together with nothing else (buttons, eyes, teeth, plates of armour) follow one joint as a whole: that with the most
+// weight in them. Parts that are joined to others along edges do not count as islands: `mesh` is clean (geometry::clean).
+// Returns how many islands were made rigid.
+std::size_t make_islands_rigid(WeightRows& rows, const TriangleMesh& mesh, const IslandOptions& options = {});
+
+}  // namespace osteon::skin

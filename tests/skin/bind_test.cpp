@@ -54,7 +54,7 @@ TEST(Bind, fingers_side_by_side_keep_their_own_weight) {
 
 TEST(Bind, legs_of_one_skin_that_touch_keep_their_own_weight) {
   const float radius = 0.1f;
-  const test::UTube legs = test::u_tube(radius, 0.0f, 1.0f);
+  const test::UTube legs = test::u_tube(radius, 1e-4f, 1.0f);
   Skeleton skeleton;
   const JointId hip = skeleton.add("hip", std::nullopt, {0, -radius, 0});
   for (const float side : {-1.0f, 1.0f}) {

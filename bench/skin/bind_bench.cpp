@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
+
+#include "osteon/skin/bind.h"
+#include "osteon/synth/character.h"
+
+// Binding a procedural biped, by the vertices of its mesh and by its bones.
+namespace osteon::skin {
+namespace {
+
+Rig biped(std::int64_t cells) { return synth::make_character(synth::Kind::Biped, 3, {static_cast<int>(cells), synth::Finish::Smooth}); }
+
+// The same tree with every bone cut into so many.
+Skeleton subdivided(const Skeleton& skeleton, int parts) {
+  Skeleton out;
+  PerJoint<JointId> place(skeleton.size());
+  for (JointId j : skeleton.names.ids()) {
+    std::optional<JointId> above;
+    const auto& parent = skeleton.parents[j];
+    if (parent) above = place[*parent];
+    for (int k = 1; parent && k < parts; ++k) {
+      const float t = static_cast<float>(k) / static_cast<float>(parts);
+      const Vec3f p = (1.0f - t) * skeleton.rest_positions[*parent] + t * skeleton.rest_positions[j];
+      above = out.add(skeleton.names[j] + "_" + std::to_string(k), above, p, skeleton.rest_orientations[*parent]);
+    }
+    place[j] = out.add(skeleton.names[j], above, skeleton.rest_positions[j], skeleton.rest_orientations[j]);
+  }
+  return out;
+}
+
+void by_vertices(benchmark::State& state) {
+  const Rig rig = biped(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(bind(rig.mesh, rig.skeleton));
+  state.counters["vertices"] = static_cast<double>(rig.mesh.positions.size());
+}
+void by_bones(benchmark::State& state) {
+  const Rig rig = biped(96);
+  const Skeleton skeleton = subdivided(rig.skeleton, static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(bind(rig.mesh, skeleton));
+  state.counters["joints"] = static_cast<double>(skeleton.size());
+}
+void by_method(benchmark::State& state) {
+  const Rig rig = biped(96);
+  BindOptions options;
+  options.method = static_cast<Method>(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(bind(rig.mesh, rig.skeleton, options));
+}
+
+BENCHMARK(by_vertices)->Arg(64)->Arg(128)->Arg(256)->Arg(400)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(by_bones)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(by_method)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace osteon::skin

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/skin_character.h"
+
+#include <algorithm>
+
+#include "osteon/pipelines/skeleton_fit.h"
+#include "osteon/pipelines/skin_quality.h"
+#include "osteon/synth/character.h"
+#include "support/expect.h"
+
+namespace osteon::pipelines {
+namespace {
+
+Rig biped() { return synth::make_character(synth::Kind::Biped, 3, {64, synth::Finish::Smooth}); }
+
+TEST(SkinCharacter, mirror_makes_the_halves_equal_bit_by_bit) {
+  Rig rig = biped();
+  const auto mirror = mirror_map(rig.mesh, rig.skeleton);
+  if (!mirror) GTEST_SKIP() << "this character wears something on one side";
+  SkinCharacterOptions options;
+  options.bind.resolution = 64;
+  options.mirror = true;
+  rig.weights = skin_character(rig.mesh, rig.skeleton, options).weights;
+  validate(rig);
+  PerVertex<std::optional<VertexId>> original(mirror->vertex_partner.size());
+  for (VertexId v : rig.mesh.positions.ids()) original[mirror->from_original[v]] = v;
+  for (VertexId v : rig.mesh.positions.ids()) {
+    const auto image = rig.weights[*original[mirror->vertex_partner[mirror->from_original[v]]]];
+    ASSERT_EQ(image.size(), rig.weights[v].size());
+    for (const Influence& i : rig.weights[v]) {
+      const auto found = std::ranges::find(image, mirror->joint_partner[i.joint], &Influence::joint);
+      ASSERT_TRUE(found != image.end());
+      EXPECT_EQ(found->weight, i.weight);
+    }
+  }
+  EXPECT_LT(*skin_quality(rig).asymmetry, 1e-6);
+}
+
+TEST(SkinCharacter, mirror_says_so_where_nothing_is_symmetric) {
+  Rig rig = biped();
+  rig.skeleton.rest_positions[JointId{1}].x() += 0.2f;
+  SkinCharacterOptions options;
+  options.bind.resolution = 32;
+  options.mirror = true;
+  EXPECT_THAT(test::error_of([&] { skin_character(rig.mesh, rig.skeleton, options); }), testing::HasSubstr("mirror"));
+}
+
+TEST(SkinQuality, a_skin_by_its_own_bones_leaks_less_than_one_by_any) {
+  Rig rig = biped();
+  const SkinQuality good = skin_quality(rig);
+  EXPECT_EQ(good.unweighted, 0u);
+  EXPECT_LT(good.largest_sum_error, 1e-6);
+  EXPECT_GT(good.coverage, 0.9);
+  SkinWeights scattered;
+  for (VertexId v : rig.mesh.positions.ids()) {
+    const Influence any{static_cast<JointId>(index(v) * 7 % rig.skeleton.size()), 1.0f};
+    scattered.append({&any, 1});
+  }
+  rig.weights = scattered;
+  const SkinQuality bad = skin_quality(rig);
+  EXPECT_GT(bad.leak, 0.5);
+  EXPECT_LT(good.leak, 0.1);
+  EXPECT_GT(bad.roughness, good.roughness);
+  EXPECT_GT(bad.deformation.mean.stretch, good.deformation.mean.stretch);
+}
+
+TEST(SkeletonFit, leaves_a_skeleton_that_fits_alone) {
+  const Rig rig = biped();
+  const SkeletonFit fit = fit_skeleton(rig.skeleton, rig.mesh);
+  EXPECT_TRUE(fit.to_body.matrix().isIdentity(0.0));
+  EXPECT_EQ(fit.note, "");
+}
+
+TEST(SkeletonFit, finds_centimetres_and_the_other_up_axis) {
+  const Rig rig = biped();
+  const Eigen::Affine3d mistake(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()) * Eigen::Scaling(100.0));
+  const SkeletonFit fit = fit_skeleton(transformed(rig.skeleton, mistake), rig.mesh);
+  EXPECT_TRUE((fit.to_body * mistake).matrix().isApprox(Eigen::Matrix4d::Identity(), 1e-6)) << fit.note;
+  EXPECT_THAT(fit.note, testing::HasSubstr("0.01"));
+}
+
+TEST(SkeletonFit, scales_any_other_size_to_the_body) {
+  const Rig rig = biped();
+  const Skeleton other = transformed(rig.skeleton, Eigen::Affine3d(Eigen::Translation3d(7, 3, 0) * Eigen::Scaling(4.3)));
+  const SkeletonFit fit = fit_skeleton(other, rig.mesh);
+  const Skeleton fitted = transformed(other, fit.to_body);
+  Eigen::AlignedBox3f box = bounds(rig.mesh);
+  for (const Vec3f& p : fitted.rest_positions) EXPECT_LT(box.exteriorDistance(p), 0.3f);
+  EXPECT_THAT(fit.note, testing::HasSubstr("please check"));
+}
+
+}  // namespace
+}  // namespace osteon::pipelines

@@ -12,7 +12,7 @@ namespace osteon::pipelines {
 
 // The level of detail of the paper: the bandwidth may be anything in this range; in the middle is the one that gives the best skeletons of
 // the validation characters.
-constexpr float kFinestBandwidth = 0.01f, kDefaultBandwidth = 0.03f, kCoarsestBandwidth = 0.1f;
+constexpr float kFinestBandwidth = 0.01f, kDefaultBandwidth = 0.027f, kCoarsestBandwidth = 0.1f;
 
 // Detail 0 is the coarsest bandwidth, 0.5 the default, 1 the finest, geometric in between. Pre: 0 <= detail <= 1.
 float bandwidth_of_detail(float detail);

@@ -35,6 +35,7 @@ struct Cost {
 // Runs a program to its end. Throws Error if it fails.
 Cost run(const std::vector<std::string>& command) {
   const auto start = std::chrono::steady_clock::now();
+  std::fflush(stdout);  // or the child would print what waits there again
   const pid_t child = ::fork();
   if (child == 0) {
     std::vector<char*> words;

@@ -89,13 +89,29 @@ fs::path output_of(const BatchArguments& arguments, const Job& job, const char* 
   return arguments.output / (job.name.string() + extension);
 }
 
-// What a run that was killed left: files on their way (io::write_file), named .PROCESS.tmp.
-void remove_leftovers(const fs::path& folder) {
-  static const std::regex on_its_way(R"(.*\.[0-9]+\.tmp)");
-  std::vector<fs::path> left;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), on_its_way)) left.push_back(entry.path());
-  for (const fs::path& file : left) fs::remove(file);
+// What a run that was killed left of these results: files on their way, named RESULT.PROCESS.tmp (io::write_file). Nothing else in the
+// folder is ours to remove.
+void remove_leftovers(const BatchArguments& arguments, const std::vector<Job>& jobs) {
+  std::set<fs::path> results, folders{arguments.output};
+  for (const Job& job : jobs)
+    for (const char* extension : {".glb", ".png", ".json"}) {
+      const fs::path result = output_of(arguments, job, extension);
+      results.insert(result);
+      folders.insert(result.parent_path());
+    }
+  results.insert(arguments.output / "summary.csv");
+  static const std::regex on_its_way(R"((.*)\.[0-9]+\.tmp)");
+  for (const fs::path& folder : folders) {
+    if (!fs::is_directory(folder)) continue;
+    std::vector<fs::path> left;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      std::smatch parts;
+      if (entry.is_regular_file() && std::regex_match(name, parts, on_its_way) && results.contains(folder / parts[1].str()))
+        left.push_back(entry.path());
+    }
+    for (const fs::path& file : left) fs::remove(file);
+  }
 }
 
 // A report is written last, so what it tells of is whole. Failures are tried again: a disk may have been full.
@@ -220,7 +236,7 @@ void batch(BatchArguments arguments, const std::string& settings) {
     if (arguments.again || !is_done(arguments, job)) open.push_back(&job);
   check_outputs(arguments, jobs);
   fs::create_directories(arguments.output);
-  remove_leftovers(arguments.output);
+  remove_leftovers(arguments, jobs);
   rig_all(arguments, open);
   save_summary(arguments.output / "summary.csv", jobs);
   print_summary(arguments, jobs, jobs.size() - open.size(), std::chrono::duration<double>(Clock::now() - start).count());

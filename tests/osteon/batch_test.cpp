@@ -111,6 +111,15 @@ TEST_F(BatchCommand, writes_nothing_outside_its_folder) {
   }
 }
 
+TEST_F(BatchCommand, removes_only_what_is_its_own) {
+  fs::create_directories(folder_ / "out/other");
+  for (const char* name : {"out/notes.1.tmp", "out/other/hero.glb.12.tmp", "out/hero.glb.12.tmp"}) std::ofstream(folder_ / name) << "half";
+  ASSERT_EQ(osteon(folder_, "batch in -o out").code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/notes.1.tmp"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/other/hero.glb.12.tmp"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/hero.glb.12.tmp"));
+}
+
 TEST_F(BatchCommand, never_overwrites_a_character) {
   ASSERT_EQ(osteon(folder_, "rig in/hero.obj -o in/rigged.glb").code, 0);
   const std::string before = content(folder_ / "in/rigged.glb");

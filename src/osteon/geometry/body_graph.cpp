@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <vector>
 
 #include "osteon/base/parallel.h"
+#include "osteon/geometry/union_find.h"
 
 namespace osteon::geometry {
 namespace {
@@ -50,32 +50,12 @@ std::vector<Link> chords(const TriangleMesh& mesh, const BodyLines& lines) {
   return links;
 }
 
-// Pieces of a graph, each named by its smallest vertex.
-class Pieces {
- public:
-  explicit Pieces(const SurfaceGraph& graph) : parents_(graph.size()) {
-    std::iota(parents_.begin(), parents_.end(), 0u);
-    for (std::uint32_t v = 0; v < graph.size(); ++v)
-      for (const auto& edge : graph.of(v)) join(v, edge.to);
-  }
-  std::uint32_t of(std::uint32_t v) {
-    while (parents_[v] != v) v = parents_[v] = parents_[parents_[v]];  // path halving
-    return v;
-  }
-  bool join(std::uint32_t a, std::uint32_t b) {
-    a = of(a), b = of(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-    return a != b;
-  }
-  std::vector<std::uint32_t> all() {
-    std::vector<std::uint32_t> out(parents_.size());
-    for (std::uint32_t v = 0; v < out.size(); ++v) out[v] = of(v);
-    return out;
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
+UnionFind pieces_of(const SurfaceGraph& graph) {
+  UnionFind pieces(graph.size());
+  for (std::uint32_t v = 0; v < graph.size(); ++v)
+    for (const auto& edge : graph.of(v)) pieces.join(v, edge.to);
+  return pieces;
+}
 
 bool shorter(const Link& a, const Link& b) { return std::tuple(a.length, a.from, a.to) < std::tuple(b.length, b.from, b.to); }
 
@@ -98,7 +78,7 @@ std::vector<Link> nearest_elsewhere(const TriangleMesh& mesh, const std::vector<
 // The shortest links that join all pieces: Boruvka 1926 (each round every piece reaches for its nearest neighbour, so pieces at least
 // halve).
 std::vector<Link> links_between_pieces(const TriangleMesh& mesh, const SurfaceGraph& graph) {
-  Pieces pieces(graph);
+  UnionFind pieces = pieces_of(graph);
   std::vector<Link> links;
   for (std::vector<std::uint32_t> of = pieces.all(); std::ranges::any_of(of, [](std::uint32_t p) { return p != 0; }); of = pieces.all()) {
     std::vector<Link> candidates = nearest_elsewhere(mesh, of);

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "osteon/base/parallel.h"
+#include "osteon/geometry/union_find.h"
 
 namespace osteon::geometry {
 namespace {
@@ -23,22 +24,6 @@ constexpr float kLeastSteepness = 0.5f;     // cosine between a bridge and the n
 constexpr std::size_t kMostJoinLinks = 64;  // of a piece without source
 
 std::uint32_t number(VertexId v) { return static_cast<std::uint32_t>(v); }
-
-class Forest {
- public:
-  explicit Forest(std::size_t n) : parents_(n) { std::iota(parents_.begin(), parents_.end(), 0u); }
-  std::uint32_t root(std::uint32_t v) {
-    while (parents_[v] != v) v = parents_[v] = parents_[parents_[v]];  // path halving
-    return v;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
 
 // Every range's links, in order.
 template <class Find>
@@ -148,14 +133,12 @@ void BodyLattice::link_vertices_to_solid(const TriangleMesh& mesh, std::vector<L
 void BodyLattice::set_links(std::vector<Link> links) { links_ = with_links({std::vector<std::uint32_t>(size() + 1, 0), {}}, links); }
 
 std::vector<std::uint32_t> BodyLattice::pieces() const {
-  Forest forest(size());
+  UnionFind pieces(size());
   for (std::uint32_t n = 0; n < size(); ++n)
     visit_edges(n, [&](std::uint32_t to, float) {
-      if (to < n) forest.join(n, to);
+      if (to < n) pieces.join(n, to);
     });
-  std::vector<std::uint32_t> out(size());
-  for (std::uint32_t n = 0; n < size(); ++n) out[n] = forest.root(n);
-  return out;
+  return pieces.all();
 }
 
 void BodyLattice::join_to(std::span<const std::uint32_t> sources) {

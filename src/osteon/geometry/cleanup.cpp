@@ -11,6 +11,7 @@
 #include "osteon/base/parallel.h"
 #include "osteon/geometry/buckets.h"
 #include "osteon/geometry/bvh.h"
+#include "osteon/geometry/union_find.h"
 
 namespace osteon::geometry {
 namespace {
@@ -27,22 +28,6 @@ struct SiteFace {
 
   bool reversed() const { return sites[1] > sites[2]; }
   std::pair<Site, Site> others() const { return {std::min(sites[1], sites[2]), std::max(sites[1], sites[2])}; }
-};
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
 };
 
 // Bits that compare as the floats do; -0 and 0 are one.

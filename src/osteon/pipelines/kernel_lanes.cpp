@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/pipelines/kernel_lanes.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define OSTEON_EVERY_CPU __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define OSTEON_EVERY_CPU
-#endif
+#include "osteon/base/every_cpu.h"
 
 namespace osteon::pipelines {
 

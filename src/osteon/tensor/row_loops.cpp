@@ -3,7 +3,7 @@
 
 #include <bit>
 
-#define OSTEON_EVERY_CPU __attribute__((target_clones("avx512f", "avx2", "default")))
+#include "osteon/base/every_cpu.h"
 
 namespace osteon::tensor {
 

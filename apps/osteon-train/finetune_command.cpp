@@ -8,8 +8,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "characters.h"
 #include "../interrupt.h"
+#include "../progress_bar.h"
+#include "characters.h"
 #include "osteon/base/parallel.h"
 #include "osteon/base/progress.h"
 #include "osteon/dataset/holdout.h"
@@ -17,7 +18,6 @@
 #include "osteon/infer/model_folder.h"
 #include "osteon/train/finetune.h"
 #include "osteon_commit.h"
-#include "../progress_bar.h"
 #include "training_log.h"
 
 namespace osteon::app {
@@ -54,7 +54,7 @@ void check_output(const FinetuneArguments& a, const Unfinished& unfinished) {
 
 // Before the long work begins.
 void check_weights(const fs::path& folder) {
-  for (const char* name : {"votes", "bind", "bones", "root"})
+  for (const char* name : {"votes", "bind", "tree"})
     if (const fs::path file = folder / fmt::format("{}.safetensors", name); !fs::exists(file))
       throw Error("{}: not there; expected the weights to start from", file.string());
 }

@@ -5,11 +5,14 @@
 #include <ATen/core/grad_mode.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "../interrupt.h"
 #include "osteon/base/parallel.h"
+#include "osteon/base/random.h"
 #include "osteon/dataset/pack.h"
 #include "osteon/train/trainer.h"
 #include "osteon_commit.h"
@@ -26,6 +29,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<fs::path> data;
   std::vector<double> shares;
+  double groups = 1.0;
   fs::path validation, out, init, attention, attention_out, log;
   std::string device = "cpu";
   int threads = 0;
@@ -42,6 +46,9 @@ void add_common_options(CLI::App& command, Arguments& a) {
       ->check(CLI::ExistingFile);
   command.add_option("--shares", a.shares, "How much of what is shown is of each file of --data (default: all files drawn from as one)")
       ->check(CLI::NonNegativeNumber);
+  command.add_option("--groups", a.groups, "Learn from this share of each file's groups alone, to see what more data brings")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command.add_option("--val", a.validation, "Validation characters")->check(CLI::ExistingFile);
   command.add_option("--out", a.out, "Where the weights go (safetensors)")->required();
   command.add_option("--init", a.init, "Weights to start from")->check(CLI::ExistingFile);
@@ -103,9 +110,22 @@ void add_combined_options(CLI::App& command, Arguments& a) {
   command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
 }
 
-std::vector<dataset::Example> examples_of(const fs::path& file, Task task) {
+// Only characters of a share of the groups, drawn by the seed; at least one. A character without a group is one by itself.
+void keep_groups(std::vector<dataset::PreparedCharacter>& characters, double share, std::uint64_t seed) {
+  const auto group_of = [](const dataset::PreparedCharacter& c) { return c.info.group.empty() ? c.info.id : c.info.group; };
+  std::set<std::string> all;
+  for (const auto& c : characters) all.insert(group_of(c));
+  std::vector<std::string> drawn(all.begin(), all.end());
+  Random(seed).shuffle<std::string>(drawn);
+  const auto kept = static_cast<std::size_t>(std::ceil(share * static_cast<double>(drawn.size())));
+  const std::set<std::string> left_out(drawn.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(kept, 1)), drawn.end());
+  std::erase_if(characters, [&](const auto& c) { return left_out.contains(group_of(c)); });
+}
+
+std::vector<dataset::Example> examples_of(const fs::path& file, Task task, double groups = 1.0, std::uint64_t seed = 0) {
   std::vector<dataset::PreparedCharacter> characters = dataset::load_characters(file);
-  if (task == Task::bones || task == Task::root) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
+  if (groups < 1.0) keep_groups(characters, groups, seed);
+  if (train::is_about_pairs(task)) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
   if (characters.empty()) throw Error("{}: no characters to learn from", file.string());
   return dataset::examples_of(std::move(characters), train::parts_of(task));
 }
@@ -121,7 +141,7 @@ Corpus corpus_of(const Arguments& a, Task task) {
     throw Error("--shares: found {} numbers for {} files of --data, expected one for each", a.shares.size(), a.data.size());
   Corpus corpus;
   for (std::size_t i = 0; i < a.data.size(); ++i) {
-    std::vector<dataset::Example> of_file = examples_of(a.data[i], task);
+    std::vector<dataset::Example> of_file = examples_of(a.data[i], task, a.groups, a.options.seed);
     if (!a.shares.empty())
       for (const double weight : dataset::sampling_weights(of_file)) corpus.sampling.push_back(a.shares[i] * weight);
     std::ranges::move(of_file, std::back_inserter(corpus.examples));
@@ -211,8 +231,9 @@ void add_rignet_commands(CLI::App& app) {
               "How far each vertex is from a joint and how well it can tell, in one network (the default)");
   add_command(app, Task::attention, "rignet.attention", "Where on the surface the joints are");
   add_command(app, Task::joints, "rignet.joints", "How far each vertex is from a joint; --combined: the whole joint stage");
-  add_command(app, Task::bones, "rignet.bones", "Which joints a bone connects");
-  add_command(app, Task::root, "rignet.root", "Which joint is the root");
+  add_command(app, Task::tree, "rignet.tree", "Which joint is the parent of which (the default)");
+  add_command(app, Task::bones, "rignet.bones", "Which joints a bone connects, by the paper's network");
+  add_command(app, Task::root, "rignet.root", "Which joint is the root, by the paper's network");
   add_command(app, Task::bind, "rignet.bind", "How vertices follow the bones near them (the default)");
   add_command(app, Task::skin, "rignet.skin", "The same by the paper's network");
 }

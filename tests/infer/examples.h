@@ -44,7 +44,7 @@ inline infer::Parameters random_parameters(Network network, std::uint64_t seed) 
 
 // Vertices in the unit box with 3 to 8 one-ring and 0 to 12 geodesic neighbours each, joints, all pairs of them, skin features.
 struct ExampleInput : nets::NetworkInputs {
-  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features, &choices, &votes}; }
+  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features, &choices, &votes, &tree}; }
 
   void add_mesh(std::size_t vertices, std::size_t joint_count, Random& random) {
     const std::int32_t first_vertex = mesh.batch.rows(), first_joint = joints.batch.rows();
@@ -60,6 +60,7 @@ struct ExampleInput : nets::NetworkInputs {
     append(joints.plane_distance, joint_count, random);
     joints.pairs.add_complete(static_cast<std::int32_t>(joint_count), first_joint);
     joints.batch.add(joint_count);
+    add_tree(joint_count, random);
     for (std::int32_t i = first_joint; i < joints.batch.rows(); ++i) {
       for (std::int32_t j = i + 1; j < joints.batch.rows(); ++j) {
         pairs.first.push_back(i);
@@ -80,6 +81,13 @@ struct ExampleInput : nets::NetworkInputs {
       if (seed) seeds.push_back(v);
     }
     votes.add(features, seeds, region_of, first_vertex);
+  }
+
+  void add_tree(std::size_t joint_count, Random& random) {
+    std::vector<float> of_joints, of_pairs;
+    append(of_joints, nets::tree_joint_features * joint_count, random);
+    append(of_pairs, nets::tree_pair_features * joint_count * joint_count, random);
+    tree.add(of_joints, of_pairs);
   }
 
  private:

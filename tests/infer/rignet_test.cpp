@@ -22,7 +22,12 @@ RignetModels models_with(std::initializer_list<Network> networks) {
 }
 
 const RignetModels& models() {
-  static const RignetModels loaded = models_with({Network::votes, Network::bones, Network::root, Network::bind});
+  static const RignetModels loaded = models_with({Network::votes, Network::tree, Network::bind});
+  return loaded;
+}
+
+const RignetModels& paper_models() {
+  static const RignetModels loaded = models_with({Network::joints, Network::attention, Network::bones, Network::root, Network::skin});
   return loaded;
 }
 
@@ -32,8 +37,7 @@ Matrix matrix_of(const std::vector<float>& values, Eigen::Index columns) {
 
 TEST(RignetModels, attention_and_probabilities_lie_between_0_and_1) {
   const test::ExampleInput input = test::one_mesh(120, 7, 2);
-  const RignetModels paper = models_with({Network::joints, Network::attention, Network::bones, Network::root, Network::skin});
-  for (const RignetModels* model : {&models(), &paper}) {
+  for (const RignetModels* model : {&models(), &paper_models()}) {
     const JointVotes votes = model->votes(input.mesh, input.votes);
     EXPECT_EQ(votes.attention.rows(), 120);
     EXPECT_EQ(votes.attention.cols(), 1);
@@ -42,37 +46,48 @@ TEST(RignetModels, attention_and_probabilities_lie_between_0_and_1) {
     EXPECT_EQ(votes.displacement.rows(), 120);
     EXPECT_EQ(votes.displacement.cols(), 3);
   }
-  const Matrix bones = models().bone_probabilities(input.mesh, input.joints, matrix_of(input.pairs.features, 8));
+  ASSERT_FALSE(paper_models().finds_parents());
+  const Matrix bones = paper_models().bone_probabilities(input.mesh, input.joints, matrix_of(input.pairs.features, 8));
   EXPECT_EQ(bones.rows(), 21);
   EXPECT_GE(bones.minCoeff(), 0);
   EXPECT_LE(bones.maxCoeff(), 1);
-  const Matrix roots = models().root_probabilities(input.mesh, input.joints);
+  const Matrix roots = paper_models().root_probabilities(input.mesh, input.joints);
   EXPECT_EQ(roots.rows(), 7);
   EXPECT_NEAR(roots.sum(), 1, 1e-5f);
 }
 
+TEST(RignetModels, every_joint_has_one_parent_or_is_the_root) {
+  const test::ExampleInput input = test::one_mesh(20, 7, 2);
+  ASSERT_TRUE(models().finds_parents());
+  const Matrix parents = models().parent_probabilities(input.joints, input.tree);
+  ASSERT_EQ(parents.rows(), 7);
+  ASSERT_EQ(parents.cols(), 7);
+  EXPECT_GT(parents.minCoeff(), 0);
+  EXPECT_TRUE(parents.rowwise().sum().isApproxToConstant(1.0f, 1e-5f));
+}
+
 TEST(RignetModels, a_bone_is_as_likely_from_either_of_its_ends) {
   test::ExampleInput input = test::one_mesh(60, 2, 3);
-  const Matrix before = models().bone_probabilities(input.mesh, input.joints, matrix_of(input.pairs.features, 8));
+  const Matrix before = paper_models().bone_probabilities(input.mesh, input.joints, matrix_of(input.pairs.features, 8));
   std::swap_ranges(input.joints.positions.begin(), input.joints.positions.begin() + 3, input.joints.positions.begin() + 3);
   std::swap_ranges(input.pairs.features.begin(), input.pairs.features.begin() + 3, input.pairs.features.begin() + 3);
-  const Matrix after = models().bone_probabilities(input.mesh, input.joints, matrix_of(input.pairs.features, 8));
+  const Matrix after = paper_models().bone_probabilities(input.mesh, input.joints, matrix_of(input.pairs.features, 8));
   EXPECT_NEAR(before(0, 0), after(0, 0), 1e-6f);
 }
 
 TEST(RignetModels, a_single_joint_has_no_pairs_and_is_the_root) {
   const test::ExampleInput input = test::one_mesh(30, 1, 4);
-  EXPECT_EQ(models().bone_probabilities(input.mesh, input.joints, Matrix(0, 8)).rows(), 0);
-  EXPECT_EQ(models().root_probabilities(input.mesh, input.joints)(0, 0), 1);
+  EXPECT_EQ(models().parent_probabilities(input.joints, input.tree)(0, 0), 1);
+  EXPECT_EQ(paper_models().bone_probabilities(input.mesh, input.joints, Matrix(0, 8)).rows(), 0);
+  EXPECT_EQ(paper_models().root_probabilities(input.mesh, input.joints)(0, 0), 1);
 }
 
 TEST(RignetModels, skin_weights_sum_to_1_over_the_bones_that_there_are) {
   const test::ExampleInput input = test::one_mesh(50, 2, 5);
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> nearest(50, 5);
   nearest.rowwise() = Eigen::Matrix<int, 1, 5>(2, 0, 1, -1, -1);
-  const RignetModels paper = models_with({Network::votes, Network::bones, Network::root, Network::skin});
-  EXPECT_FALSE(paper.binds());
-  const Matrix weights = paper.skin_weights(input.mesh, matrix_of(input.skin_features, 43), nearest);
+  EXPECT_FALSE(paper_models().binds());
+  const Matrix weights = paper_models().skin_weights(input.mesh, matrix_of(input.skin_features, 43), nearest);
   EXPECT_TRUE((weights.rightCols(2).array() == 0).all());
   for (Eigen::Index v = 0; v < 50; ++v) EXPECT_NEAR(weights.row(v).sum(), 1, 1e-6f);
 }
@@ -101,10 +116,10 @@ TEST(RignetModels, may_be_used_by_two_threads_at_once) {
 
 TEST(RignetModels, every_missing_file_is_named) {
   const test::TemporaryFolder folder;
-  save_safetensors(folder / "root.safetensors", {});
+  save_safetensors(folder / "tree.safetensors", {});
   const std::string error = test::error_of([&] { RignetModels::load(folder.path()); });
-  for (const char* name : {"votes", "bones", "bind"}) EXPECT_THAT(error, HasSubstr((folder / name).string() + ".safetensors"));
-  EXPECT_THAT(error, testing::Not(HasSubstr("root.safetensors")));
+  for (const char* name : {"votes", "bind"}) EXPECT_THAT(error, HasSubstr((folder / name).string() + ".safetensors"));
+  EXPECT_THAT(error, testing::Not(HasSubstr("tree.safetensors")));
 }
 
 TEST(SingleMesh, every_vertex_hears_itself_first) {

@@ -14,8 +14,7 @@ using test::Network;
 
 // A network that adds nothing leaves every vote in the middle of the body, whichever way it was shown the character.
 TEST(JointVotes, of_a_silent_network_are_the_middles_of_the_body_in_all_views) {
-  const infer::RignetModels silent =
-      test::untrained_models({Network::votes, Network::bones, Network::root, Network::bind}, test::LastLayer::zero);
+  const infer::RignetModels silent = test::untrained_models({Network::votes, Network::tree, Network::bind}, test::LastLayer::zero);
   const TriangleMesh mesh = geometry::make_working_mesh(shapes::capsule(0.2f, 1.0f)).mesh;
   const geometry::GeodesicBalls balls = geometry::geodesic_balls(mesh);
   const geometry::Neighbourhoods ring = geometry::one_ring(mesh), near = geometry::evenly(balls, 10);

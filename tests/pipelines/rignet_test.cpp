@@ -19,14 +19,13 @@ using testing::HasSubstr;
 
 // Networks that were never trained: whatever they say, the rig has to be valid.
 const infer::RignetModels& untrained() {
-  static const infer::RignetModels models = test::untrained_models({Network::votes, Network::bones, Network::root, Network::bind});
+  static const infer::RignetModels models = test::untrained_models({Network::votes, Network::tree, Network::bind});
   return models;
 }
 
 // Networks that leave every vote in the middle of the body: there are joints on the plane of symmetry.
 const infer::RignetModels& silent() {
-  static const infer::RignetModels models =
-      test::untrained_models({Network::votes, Network::bones, Network::root, Network::bind}, test::LastLayer::zero);
+  static const infer::RignetModels models = test::untrained_models({Network::votes, Network::tree, Network::bind}, test::LastLayer::zero);
   return models;
 }
 

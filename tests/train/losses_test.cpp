@@ -66,6 +66,7 @@ TEST(Losses, have_the_gradients_of_central_differences) {
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return density_loss(points.to(at::kDouble), x, joints, 0.2); }, attention), 1e-6);
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return bone_loss(x, labels); }, logits), 1e-7);
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return root_loss(x, {0, 8, 20}, {3, 8}); }, logits), 1e-7);
+  EXPECT_LT(gradient_error([&](const at::Tensor& x) { return tree_loss(x, {0, 4, 6}, {1, 1, 0, 1, 0, 0}); }, logits), 1e-7);
   const at::Tensor weights = random_points(6, 5, 5, 1.0f).to(at::kDouble).softmax(1),
                    share = random_points(6, 1, 6, 1.0f).squeeze(1).to(at::kDouble);
   EXPECT_LT(gradient_error([&](const at::Tensor& x) { return skin_loss(x, weights, share); }, random_points(6, 5, 7, 2.0f)), 1e-7);
@@ -76,6 +77,17 @@ TEST(BoneLoss, adds_the_mean_of_the_hardest_three_tenths) {
   const at::Tensor logits = torch::tensor({2.0f, 1.0f, 0.5f, 3.0f, 3.0f, 3.0f, 3.0f, 3.0f, 3.0f, 3.0f}).unsqueeze(1), ones = at::ones({10});
   const at::Tensor each = at::softplus(-logits.squeeze(1));
   EXPECT_NEAR(bone_loss(logits, ones).item<float>(), (each.mean() + each.narrow(0, 0, 3).mean()).item<float>(), 1e-6f);
+}
+
+// Two joints that both may have either as their parent: each knows nothing, and neither does the root.
+TEST(TreeLoss, of_equal_logits_is_the_logarithm_of_the_choices) {
+  EXPECT_NEAR(tree_loss(at::zeros({4, 1}), {0, 2}, {0, 0}).item<float>(), 2.0f * std::log(2.0f), 1e-6f);
+  EXPECT_NEAR(tree_loss(at::zeros({13, 1}), {0, 2, 5}, {0, 0, 2, 2, 2}).item<float>(), std::log(2.0f) + std::log(3.0f), 1e-6f);
+}
+
+TEST(TreeLoss, vanishes_where_every_parent_is_sure) {
+  const at::Tensor sure = torch::tensor({{50.0f, 0.0f, 0.0f}, {50.0f, 0.0f, 0.0f}, {0.0f, 50.0f, 0.0f}}).view({9, 1});
+  EXPECT_NEAR(tree_loss(sure, {0, 3}, {0, 0, 1}).item<float>(), 0.0f, 1e-6f);
 }
 
 TEST(SkinLoss, is_the_entropy_of_the_weights_where_they_are_met) {

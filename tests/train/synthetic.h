@@ -63,6 +63,10 @@ inline void add_joints(NetworkInputs& inputs, int joints, Random& random) {
   }
   inputs.joints.pairs.add_complete(joints, first);
   inputs.joints.batch.add(static_cast<std::size_t>(joints));
+  std::vector<float> of_joints, of_pairs;
+  for (int i = 0; i < joints * nets::tree_joint_features; ++i) of_joints.push_back(random.uniform(-1.0f, 1.0f));
+  for (int i = 0; i < joints * joints * nets::tree_pair_features; ++i) of_pairs.push_back(random.uniform(-1.0f, 1.0f));
+  inputs.tree.add(of_joints, of_pairs);
 }
 
 inline NetworkInputs two_characters(int vertices = 40, int joints = 6) {

@@ -87,8 +87,8 @@ TEST_P(Learning, thirty_steps_lower_the_loss) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rignet, Learning,
-                         ::testing::Values(Task::attention, Task::joints, Task::votes, Task::collapse, Task::bones, Task::root, Task::skin,
-                                           Task::bind));
+                         ::testing::Values(Task::attention, Task::joints, Task::votes, Task::collapse, Task::bones, Task::root, Task::tree,
+                                           Task::skin, Task::bind));
 
 TEST(Trainer, goes_on_after_a_stop_as_if_there_had_been_none) {
   const auto file = std::filesystem::temp_directory_path() / ("osteon_resume_" + std::to_string(::getpid()) + ".safetensors");

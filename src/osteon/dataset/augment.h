@@ -19,11 +19,13 @@ struct AugmentOptions {
   ArticulateOptions articulate = {};
   float fold = 0.5f;                 // probability of a coarser rig: fewer joints, down to ...
   float least_fold = 0.25f;          // ... this share of them
+  float misplaced = 0.5f;            // tree only: probability of joints that are not where they belong, by ...
+  float misplacement = 0.015f;       // ... up to about this, in parts of the longest side
   float joint_count_blur = 0.15f;    // standard deviation of the logarithm of the number of joints that the voting network is told
   float reduce = 0.7f;               // probability of fewer vertices, where no weights are learned ...
   std::size_t least_vertices = 500;  // ... from here up to as many as there are
 
-  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f, 1.0f, 0.0f, 0.0f}; }
+  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f}; }
 };
 
 // An affine map of a character: its labels stay true.

@@ -11,6 +11,7 @@
 #include "osteon/geometry/decimate.h"
 #include "osteon/geometry/regions.h"
 #include "osteon/geometry/symmetry.h"
+#include "osteon/geometry/tree_features.h"
 
 namespace osteon::dataset {
 namespace {
@@ -43,6 +44,7 @@ Example example_of(PreparedCharacter character, Parts parts, const std::optional
     example.pair_features = geometry::pair_features(character.skeleton.rest_positions.raw(), character.voxels);
     example.pair_labels = pair_labels(character.skeleton);
   }
+  if (parts == Parts::tree) example.inside = geometry::inside_shares(character.skeleton.rest_positions.raw(), character.voxels);
   if (parts == Parts::skin) {
     const geometry::SkinInputs inputs = skin_inputs(character);
     example.skin_features = inputs.features;
@@ -76,7 +78,8 @@ const Example& varied(const Example& example, Parts parts, const AugmentOptions&
     changed.mesh = geometry::decimate(changed.mesh, {.target_vertices = target}).mesh;
   }
   derive_from_shape(changed, parts);
-  const auto symmetry = parts == Parts::pairs ? geometry::symmetry_plane(changed.mesh) : example.symmetry;  // the others do not read it
+  const bool reads_plane = parts == Parts::pairs || parts == Parts::tree;
+  const auto symmetry = reads_plane ? geometry::symmetry_plane(changed.mesh) : example.symmetry;
   return made.emplace(example_of(std::move(changed), parts, symmetry));
 }
 
@@ -114,6 +117,33 @@ void add_votes(Batch& batch, const Example& example, const Placement& placement,
   for (const Vec3f& p : example.character.mesh.positions) positions.push_back(placement.apply(p));
   const auto& starts = batch.inputs.mesh.batch.offsets;
   batch.inputs.votes.add(geometry::vote_rows(positions, placed, joints), regions.seeds, regions.region_of, starts[starts.size() - 2]);
+}
+
+// Of the joints that were added last. `astray` (J) is added to their positions.
+void add_tree(Batch& batch, const Example& example, const Placement& placement, std::span<const Vec3f> astray) {
+  const PreparedCharacter& character = example.character;
+  const Plane plane = example.symmetry.value_or(Plane{Vec3f::UnitX(), 0.0f});
+  std::vector<Vec3f> joints, images, vertices;
+  for (JointId j : character.skeleton.names.ids()) {
+    const Vec3f p = character.skeleton.rest_positions[j] + astray[static_cast<std::size_t>(j)];
+    joints.push_back(placement.apply(p));
+    images.push_back(placement.apply(plane.mirror(p)));
+  }
+  for (const Vec3f& p : character.mesh.positions) vertices.push_back(placement.apply(p));
+  const geometry::TreeFeatures features = geometry::tree_features({joints, images, vertices, example.inside});
+  batch.inputs.tree.add({features.joints.data(), static_cast<std::size_t>(features.joints.size())},
+                        {features.pairs.data(), static_cast<std::size_t>(features.pairs.size())});
+  for (const int parent : parent_indices(character.skeleton))
+    batch.targets.parents.push_back(parent < 0 ? 0 : parent);  // joint 0 is the root
+}
+
+// How far each joint is from where it belongs.
+std::vector<Vec3f> random_errors(std::size_t joints, const AugmentOptions& options, Random& random) {
+  std::vector<Vec3f> errors(joints, Vec3f::Zero());
+  if (random.uniform() >= options.misplaced) return errors;
+  const float largest = options.misplacement * random.uniform();
+  for (Vec3f& e : errors) e = largest * Vec3f(random.normal(), random.normal(), random.normal());
+  return errors;
 }
 
 // A pair of joints of one example, by their rows there; `row` is that of its features.
@@ -232,8 +262,10 @@ Batch training_batch(std::span<const Example* const> examples, const BatchOption
     const Example& example = varied(*original, options.parts, augment, random, made);
     const PreparedCharacter& character = example.character;
     const Placement placement = random_placement(character.mesh.positions.raw(), augment, random);
-    add_mesh(batch.inputs.mesh, character, placement, geometry::drawn(character.balls, options.neighbours, random));
+    if (options.parts != Parts::tree)
+      add_mesh(batch.inputs.mesh, character, placement, geometry::drawn(character.balls, options.neighbours, random));
     add_joints(batch, example, placement);
+    if (options.parts == Parts::tree) add_tree(batch, example, placement, random_errors(character.joints(), augment, random));
     if (options.parts == Parts::joints) {
       const float joints = static_cast<float>(character.joints()) * std::exp(augment.joint_count_blur * random.normal());
       const auto first = static_cast<std::uint32_t>(random.below(character.vertices()));
@@ -254,8 +286,9 @@ Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& 
   Batch batch;
   for (const Example* example : examples) {
     const PreparedCharacter& character = example->character;
-    add_mesh(batch.inputs.mesh, character, {}, geometry::evenly(character.balls, options.neighbours));
+    if (options.parts != Parts::tree) add_mesh(batch.inputs.mesh, character, {}, geometry::evenly(character.balls, options.neighbours));
     add_joints(batch, *example, {});
+    if (options.parts == Parts::tree) add_tree(batch, *example, {}, std::vector<Vec3f>(character.joints(), Vec3f::Zero()));
     if (options.parts == Parts::joints) {
       const std::uint32_t first = geometry::outermost_vertex(character.mesh);
       add_votes(batch, *example, {}, geometry::regions(character.mesh, character.balls, nets::vote_regions, first),

@@ -21,6 +21,7 @@ struct Example {
   geometry::VoteFeatures vote_features;   // joints only
   Matrix pair_features;                   // (P,8); pairs only
   std::vector<std::uint8_t> pair_labels;  // (P); pairs only
+  Matrix inside;                          // (J,J) share of the way between two joints that is inside; tree only
   Matrix skin_features;                   // (V,43); skin only
   geometry::IndexMatrix choices;          // (V,8) the bones that each vertex may follow, -1: none; bind only
   geometry::SkinTargets skin_targets;     // skin: (V,5) and (V); bind: (V,8) and (V), 0 where there are fewer bones
@@ -37,7 +38,8 @@ std::vector<std::size_t> draw(std::span<const double> weights, std::size_t count
 struct BatchTargets {
   std::vector<float> attention;         // (V) 0 or 1
   std::vector<std::int32_t> root;       // (M) row of each mesh's root joint
-  std::vector<float> connected;         // (P) 0 or 1
+  std::vector<float> connected;         // (P) 0 or 1; pairs only
+  std::vector<std::int64_t> parents;    // (J) within the skeleton, the root's is itself; tree only
   std::vector<float> skin, skin_share;  // (V,5), bind: (V,8), rows sum to 1 or are 0; (V) which part of the vertex's weight these can carry
 };
 
@@ -47,7 +49,7 @@ struct Batch {
 };
 
 struct BatchOptions {
-  Parts parts = Parts::joints;  // joints: attention too; pairs: joints too
+  Parts parts = Parts::joints;  // joints: attention too; pairs: joints too; tree: joints alone, no mesh
   std::size_t neighbours = 10;  // geodesic ones of a vertex
 };
 

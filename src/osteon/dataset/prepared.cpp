@@ -85,8 +85,10 @@ void derive_nearest_bones(PreparedCharacter& character, int most) {
 }
 
 void derive_from_shape(PreparedCharacter& character, Parts parts) {
-  character.one_ring = geometry::one_ring(character.mesh);
-  character.balls = geometry::geodesic_balls(character.mesh);
+  if (parts != Parts::tree) {
+    character.one_ring = geometry::one_ring(character.mesh);
+    character.balls = geometry::geodesic_balls(character.mesh);
+  }
   const std::vector<Vec3f>& joints = character.skeleton.rest_positions.raw();
   if (parts == Parts::joints) character.attention = geometry::attention_labels(character.mesh, joints, parent_indices(character.skeleton));
   if (parts != Parts::joints) character.voxels = geometry::voxelize(character.mesh);

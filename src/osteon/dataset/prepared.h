@@ -57,7 +57,7 @@ struct PreparedCharacter {
 PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptions& options = {});
 
 // Which parts of a character, beside its mesh and joints, a network learns from.
-enum class Parts { joints, pairs, skin, bind };  // joints: attention too; pairs: of joints; skin, bind: bones and weights
+enum class Parts { joints, pairs, tree, skin, bind };  // joints: attention too; pairs, tree: of joints; skin, bind: bones and weights
 
 // Fills one_ring, balls and voxels from the mesh (prepare() and loading do so).
 void derive_inputs(PreparedCharacter& character);
@@ -66,7 +66,7 @@ void derive_inputs(PreparedCharacter& character);
 void derive_nearest_bones(PreparedCharacter& character, int most = PrepareOptions().nearest_bones);
 
 // After the mesh or the joints have changed: everything that follows from them and that `parts` reads. Joints: neighbourhoods and
-// attention; pairs: neighbourhoods and voxels; skin and bind: these and the nearest bones, as many as there were (not none).
+// attention; pairs: neighbourhoods and voxels; tree: voxels; skin and bind: these and the nearest bones, as many as there were (not none).
 void derive_from_shape(PreparedCharacter& character, Parts parts);
 
 // Inputs of the skin network, (V, 3 + 8k); pre: k <= options.nearest_bones of its preparation.

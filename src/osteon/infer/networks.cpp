@@ -7,6 +7,7 @@
 #include "osteon/infer/onednn_backend.h"
 #include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
+#include "osteon/nets/tree.h"
 #include "osteon/nets/voting.h"
 
 namespace osteon::infer {
@@ -30,6 +31,8 @@ typename Backend::Tensor output(Network network, Backend& b, const NetworkInput&
       return rignet::bone_net(b, mesh, on_backend(b, *input.joints), on_backend(b, *input.pairs));
     case Network::root:
       return rignet::root_net(b, mesh, on_backend(b, *input.joints));
+    case Network::tree:
+      return nets::tree_net(b, on_backend(b, *input.joints), on_backend(b, *input.tree));
     case Network::skin:
       return rignet::skin_net(b, mesh, b.tensor(input.skin_features, input.mesh.batch.rows(), rignet::skin_inputs));
     case Network::bind:

@@ -9,14 +9,15 @@
 
 namespace osteon::infer {
 
-// What the networks read; each needs the mesh, and of the rest what its name says.
+// What the networks read; each needs the mesh (tree: only that it is there), and of the rest what its name says.
 struct NetworkInput {
   const nets::MeshArrays& mesh;
-  const nets::JointArrays* joints = nullptr;  // bones, root
+  const nets::JointArrays* joints = nullptr;  // bones, root, tree
   const nets::PairArrays* pairs = nullptr;    // bones
   std::span<const float> skin_features = {};  // skin: (V,43)
   const nets::BindArrays* choices = nullptr;  // bind
   const nets::VoteArrays* votes = nullptr;
+  const nets::TreeArrays* tree = nullptr;
 };
 
 // The network's output as in nets/rignet.h (logits). Backend: Loops or Onednn; instantiated in networks.cpp.

@@ -38,7 +38,11 @@ std::vector<Network> networks_in(const fs::path& folder) {
   const auto only = [&](Network paper, Network ours) { return fs::exists(file_of(folder, paper)) && !fs::exists(file_of(folder, ours)); };
   std::vector<Network> networks{Network::votes};
   if (only(Network::joints, Network::votes)) networks = {Network::joints, Network::attention};
-  networks.insert(networks.end(), {only(Network::skin, Network::bind) ? Network::skin : Network::bind, Network::bones, Network::root});
+  networks.push_back(only(Network::skin, Network::bind) ? Network::skin : Network::bind);
+  if (only(Network::bones, Network::tree))
+    networks.insert(networks.end(), {Network::bones, Network::root});
+  else
+    networks.push_back(Network::tree);
   std::vector<std::string> missing;
   for (const Network network : networks)
     if (!fs::is_regular_file(file_of(folder, network))) missing.push_back(file_of(folder, network).string());
@@ -59,7 +63,9 @@ void pack_weights(Network network, Onednn& backend) {
   nets::VoteArrays of_votes;
   const std::uint32_t one[] = {0};
   of_votes.add(std::vector<float>(nets::vote_features), one, one, 0);
-  run(network, backend, {mesh, &joints, &pairs, features, &choices, &of_votes});
+  nets::TreeArrays of_tree;
+  of_tree.add(std::vector<float>(nets::tree_joint_features), std::vector<float>(nets::tree_pair_features));
+  run(network, backend, {mesh, &joints, &pairs, features, &choices, &of_votes, &of_tree});
 }
 
 void add_edges(nets::EdgeArrays& edges, NeighbourView neighbours) { edges.add(neighbours.offsets, neighbours.members, 0); }
@@ -160,6 +166,18 @@ JointVotes RignetModels::votes(const nets::MeshArrays& mesh, const nets::VoteArr
   const Matrix both = run(Network::votes, (*networks_)[Network::votes], {.mesh = mesh, .votes = &vote_inputs});
   const Eigen::Map<const Matrix> features(vote_inputs.features.data(), both.rows(), nets::vote_features);
   return {features.middleCols(nets::vote_to_middle, 3) + nets::vote_unit * both.leftCols(3), sigmoid(both.rightCols(1))};
+}
+
+bool RignetModels::finds_parents() const { return networks_->has(Network::tree); }
+
+Matrix RignetModels::parent_probabilities(const nets::JointArrays& joints, const nets::TreeArrays& tree) const {
+  const Matrix logits = run(Network::tree, (*networks_)[Network::tree], {.mesh = {}, .joints = &joints, .tree = &tree});
+  Matrix out = Eigen::Map<const Matrix>(logits.data(), joints.batch.rows(), joints.batch.rows());
+  for (auto row : out.rowwise()) {
+    row = (row.array() - row.maxCoeff()).exp().matrix();
+    row /= row.sum();
+  }
+  return out;
 }
 
 Matrix RignetModels::bone_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints, const Matrix& pair_features) const {

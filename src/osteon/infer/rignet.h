@@ -34,8 +34,8 @@ struct JointVotes {
 // vertices renumbers them and nothing else. May be used by several threads at the same time.
 class RignetModels {
  public:
-  // From {votes,bones,root,bind}.safetensors, float32 or float16. The paper's networks may be there instead: joints and attention for
-  // votes, skin for bind. Throws one Error that names each missing file, or each parameter of a file that does not fit.
+  // From {votes,tree,bind}.safetensors, float32 or float16. The paper's networks may be there instead: joints and attention for votes,
+  // bones and root for tree, skin for bind. Throws one Error that names each missing file, or each parameter of a file that does not fit.
   // Throws Error where products in bf16 are asked for and this processor has none.
   static RignetModels load(const std::filesystem::path& folder, tensor::Precision precision = tensor::Precision::f32);
   static RignetModels load();  // from where find_models("rignet") says
@@ -45,6 +45,12 @@ class RignetModels {
   RignetModels& operator=(RignetModels&&) noexcept;
 
   JointVotes votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs) const;
+
+  // Whether every joint's parent comes from the tree network: then parent_probabilities() may be asked, else the two after it.
+  bool finds_parents() const;
+
+  // (J,J) row i: how likely each joint is the parent of joint i, i itself where i is the root; rows sum to 1.
+  Matrix parent_probabilities(const nets::JointArrays& joints, const nets::TreeArrays& tree) const;
 
   // (P,1) how likely a bone joins the two joints of each pair (i, j), i < j, in the order (0,1), (0,2), ..., (1,2), ... : the mean over
   // both orders of the two. pair_features: (P,8) first joint, second joint, their distance, share of the way that is inside the shape.

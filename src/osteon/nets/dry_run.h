@@ -12,6 +12,7 @@
 #include "osteon/nets/binding.h"
 #include "osteon/nets/graph.h"
 #include "osteon/nets/rignet.h"
+#include "osteon/nets/tree.h"
 #include "osteon/nets/voting.h"
 
 namespace osteon::nets {
@@ -60,13 +61,13 @@ class DryRun {
 
 namespace rignet {
 
-enum class Network { joints, attention, votes, bones, root, skin, bind };
+enum class Network { joints, attention, votes, bones, root, tree, skin, bind };
 constexpr std::array kNetworks{Network::joints, Network::attention, Network::votes, Network::bones,
-                               Network::root,   Network::skin,      Network::bind};
+                               Network::root,   Network::tree,      Network::skin,  Network::bind};
 
 // What the networks are called in files and commands.
 constexpr const char* name_of(Network network) {
-  constexpr std::array<const char*, kNetworks.size()> names{"joints", "attention", "votes", "bones", "root", "skin", "bind"};
+  constexpr std::array<const char*, kNetworks.size()> names{"joints", "attention", "votes", "bones", "root", "tree", "skin", "bind"};
   return names[static_cast<std::size_t>(network)];
 }
 
@@ -89,6 +90,9 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
       break;
     case Network::root:
       root_net(b, mesh, joints);
+      break;
+    case Network::tree:
+      tree_net(b, joints, {{tree_joint_features}, {tree_pair_features}, {}});
       break;
     case Network::skin:
       skin_net(b, mesh, {skin_inputs});

@@ -136,6 +136,24 @@ struct VoteArrays {
   }
 };
 
+// What the tree network reads of the joints of JointArrays and of the pairs of them (geometry/tree_features.h).
+constexpr int tree_joint_features = 17, tree_pair_features = 15;
+struct TreeArrays {
+  std::vector<float> joints;          // (J,tree_joint_features)
+  std::vector<float> pairs;           // (P,tree_pair_features) in the order of JointArrays::pairs
+  std::vector<std::int32_t> reverse;  // (P) the row of the same pair with source and receiver exchanged
+
+  // Those of the next skeleton.
+  void add(std::span<const float> of_joints, std::span<const float> of_pairs) {
+    const auto count = static_cast<std::int32_t>(of_joints.size()) / tree_joint_features;
+    const auto first = static_cast<std::int32_t>(reverse.size());
+    joints.insert(joints.end(), of_joints.begin(), of_joints.end());
+    pairs.insert(pairs.end(), of_pairs.begin(), of_pairs.end());
+    for (std::int32_t i = 0; i < count; ++i)
+      for (std::int32_t j = 0; j < count; ++j) reverse.push_back(first + j * count + i);
+  }
+};
+
 // The inputs of all networks; what a network does not use may be empty.
 struct NetworkInputs {
   MeshArrays mesh;
@@ -144,6 +162,7 @@ struct NetworkInputs {
   std::vector<float> skin_features;  // (V,43)
   VoteArrays votes;
   BindArrays choices;
+  TreeArrays tree;
 };
 
 template <class B>
@@ -187,6 +206,12 @@ struct Votes {
   typename B::Tensor features;  // (V,vote_features)
   typename B::Index seeds, members, offsets, region_of;
   Edges<B> pairs;
+};
+
+template <class B>
+struct TreeInputs {
+  typename B::Tensor joints, pairs;  // (J,tree_joint_features), (P,tree_pair_features)
+  typename B::Index reverse;
 };
 
 template <Ops B>
@@ -237,6 +262,12 @@ Votes<B> on_backend(B& b, const VoteArrays& votes) {
           b.index(votes.offsets),
           b.index(votes.region_of),
           on_backend(b, votes.pairs)};
+}
+
+template <Ops B>
+TreeInputs<B> on_backend(B& b, const TreeArrays& tree) {
+  return {b.tensor(tree.joints, static_cast<int>(tree.joints.size()) / tree_joint_features, tree_joint_features),
+          b.tensor(tree.pairs, static_cast<int>(tree.reverse.size()), tree_pair_features), b.index(tree.reverse)};
 }
 
 }  // namespace osteon::nets

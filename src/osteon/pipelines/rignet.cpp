@@ -13,6 +13,7 @@
 #include "osteon/geometry/neighbourhoods.h"
 #include "osteon/geometry/rignet_features.h"
 #include "osteon/geometry/symmetry.h"
+#include "osteon/geometry/tree_features.h"
 #include "osteon/geometry/volumetric_geodesic.h"
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/geometry/working_mesh.h"
@@ -144,12 +145,38 @@ Matrix nearness(const std::vector<Vec3f>& positions) {
   return out;
 }
 
+// Who belongs together and who is the root, where it is known of each joint how likely the others are its parent.
+TreeEvidence evidence_of_parents(const Matrix& parents, Matrix outside) {
+  TreeEvidence out{(parents + parents.transpose()).cwiseMin(1.0f), {}, std::move(outside)};
+  const float sum = std::max(parents.diagonal().sum(), 1e-6f);
+  for (const float own : parents.diagonal()) out.root_probability.push_back(own / sum);
+  return out;
+}
+
+Matrix parent_probabilities(std::span<const Vec3f> joints, const nets::JointArrays& arrays, const Plane& plane, const Body& body,
+                            const infer::RignetModels& models) {
+  std::vector<Vec3f> images;
+  for (const Vec3f& p : joints) images.push_back(plane.mirror(p));
+  const Matrix inside = geometry::inside_shares(joints, body.voxels);
+  const geometry::TreeFeatures features = geometry::tree_features({joints, images, body.positions(), inside});
+  nets::TreeArrays tree;
+  tree.add({features.joints.data(), static_cast<std::size_t>(features.joints.size())},
+           {features.pairs.data(), static_cast<std::size_t>(features.pairs.size())});
+  return models.parent_probabilities(arrays, tree);
+}
+
 TreeEvidence evidence(const JointSet& joints, const Body& body, const infer::RignetModels& models, const Ablation& ablation) {
   const std::vector<Vec3f> positions = joints.normalised();
   const Plane plane = body.symmetry.value_or(Plane{Vec3f::UnitX(), 0.0f});
   std::vector<float> plane_distances;
   for (const Vec3f& p : positions) plane_distances.push_back(std::abs(plane.signed_distance(p)));
   const nets::JointArrays arrays = infer::single_skeleton(positions, plane_distances);
+  if (models.finds_parents()) {
+    TreeEvidence known =
+        evidence_of_parents(parent_probabilities(positions, arrays, plane, body, models), samples_outside(positions, body.voxels));
+    if (!ablation.bone_network) known.bone_probability = nearness(positions);
+    return known;
+  }
   const Matrix root = models.root_probabilities(body.graph, arrays);
   const auto bones = [&] {
     if (!ablation.bone_network) return nearness(positions);

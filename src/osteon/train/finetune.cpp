@@ -25,15 +25,13 @@ struct Recipe {
   std::size_t batch_size;
 };
 // Time and batches as for the shipped weights (docs/training.md), a fifth of their learning rates.
-constexpr Recipe kRecipes[] = {{Task::votes, Network::votes, 0.46, 4e-4, 3},
-                               {Task::bind, Network::bind, 0.24, 6e-4, 4},
-                               {Task::bones, Network::bones, 0.15, 2e-4, 4},
-                               {Task::root, Network::root, 0.15, 2e-4, 4}};
+constexpr Recipe kRecipes[] = {
+    {Task::votes, Network::votes, 0.5, 4e-4, 3}, {Task::bind, Network::bind, 0.3, 6e-4, 4}, {Task::tree, Network::tree, 0.2, 4e-4, 8}};
 
 fs::path file_of(const fs::path& folder, Network network) { return folder / fmt::format("{}.safetensors", name_of(network)); }
 
 std::vector<Example> examples_of(std::vector<dataset::PreparedCharacter> characters, Task task) {
-  if (task == Task::bones || task == Task::root) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
+  if (is_about_pairs(task)) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
   return dataset::examples_of(std::move(characters), parts_of(task));
 }
 

@@ -18,7 +18,7 @@ struct FinetuneData {
 };
 
 struct FinetuneOptions {
-  std::filesystem::path init;         // folder with the weights to start from: {votes,bind,bones,root}.safetensors
+  std::filesystem::path init;         // folder with the weights to start from: {votes,bind,tree}.safetensors
   std::filesystem::path output;       // folder where the tuned ones go; exists
   std::filesystem::path checkpoints;  // folder where the state of a network in training is kept; exists
   double minutes = 0.0;               // of training, of all networks together ...
@@ -36,7 +36,7 @@ struct FinetunedNetwork {
   std::map<std::string, double> before, after;
 };
 
-// Tunes the voting, the binding, the bones' and the root's network in turn; of each the state with the smallest validation loss is kept,
+// Tunes the voting, the binding and the tree network in turn; of each the state with the smallest validation loss is kept,
 // never one worse than before. A network whose file is in `output` is finished, one with a checkpoint is gone on with, so that a stopped
 // run goes on as if it had not been stopped (by steps; by time it depends on the speed). Throws Cancelled, with a checkpoint written, when
 // `stop` says so.

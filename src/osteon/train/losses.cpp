@@ -60,6 +60,22 @@ at::Tensor root_loss(const at::Tensor& logits, const std::vector<std::int32_t>& 
   return sum / static_cast<double>(roots.size());
 }
 
+at::Tensor tree_loss(const at::Tensor& logits, const std::vector<std::int32_t>& offsets, const std::vector<std::int64_t>& parents) {
+  at::Tensor sum = at::zeros({}, logits.options());
+  std::int64_t first_pair = 0;
+  for (std::size_t m = 0; m + 1 < offsets.size(); ++m) {
+    const std::int64_t first = offsets[m], joints = offsets[m + 1] - first;
+    const at::Tensor of_joint = logits.narrow(0, first_pair, joints * joints).view({joints, joints}).log_softmax(1);
+    const std::vector<std::int64_t> own(parents.begin() + first, parents.begin() + first + joints);
+    const at::Tensor wanted = at::tensor(own, at::kLong).to(logits.device());
+    const auto root =
+        std::ranges::find_if(own, [&, j = std::int64_t{0}](std::int64_t parent) mutable { return parent == j++; }) - own.begin();
+    sum = sum - of_joint.gather(1, wanted.unsqueeze(1)).mean() - of_joint.diagonal().log_softmax(0)[root];
+    first_pair += joints * joints;
+  }
+  return sum / static_cast<double>(offsets.size() - 1);
+}
+
 at::Tensor skin_loss(const at::Tensor& logits, const at::Tensor& weights, const at::Tensor& share) {
   const at::Tensor each = -(weights * at::log_softmax(logits, 1)).sum(1);
   return (each * share).sum() / (share.sum() + 1e-8);

@@ -32,6 +32,12 @@ at::Tensor bone_loss(const at::Tensor& logits, const at::Tensor& targets);
 // offsets[m+1]-1; roots[m] is the row of its root.
 at::Tensor root_loss(const at::Tensor& logits, const std::vector<std::int32_t>& offsets, const std::vector<std::int32_t>& roots);
 
+// Every joint's parent: mean over the skeletons of the mean over their joints of -log p(parent), with p a softmax over the joint's
+// candidates, plus -log softmax over the joints of p(its own parent) at the root. logits (P,1): for each joint, one for each joint of its
+// skeleton, itself too; the joints of skeleton m are offsets[m] .. offsets[m+1]-1. parents[j] counts within the skeleton, the root's is
+// itself.
+at::Tensor tree_loss(const at::Tensor& logits, const std::vector<std::int32_t>& offsets, const std::vector<std::int64_t>& parents);
+
 // Mean cross-entropy of softmax(logits), (V,5), against weights whose rows sum to 1, each vertex counting with its share (V), the part of
 // its weight that the five bones can carry. Differs: the reference drops vertices whose share is not exactly 1, 7 % by rounding alone.
 at::Tensor skin_loss(const at::Tensor& logits, const at::Tensor& weights, const at::Tensor& share);

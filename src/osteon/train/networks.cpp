@@ -3,6 +3,7 @@
 
 #include "osteon/nets/binding.h"
 #include "osteon/nets/rignet.h"
+#include "osteon/nets/tree.h"
 #include "osteon/nets/voting.h"
 #include "osteon/train/device_ops.h"
 #include "osteon/train/fused_ops.h"
@@ -29,6 +30,8 @@ at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
       return nets::rignet::bone_net(b, mesh, nets::on_backend(b, inputs.joints), nets::on_backend(b, inputs.pairs));
     case Network::root:
       return nets::rignet::root_net(b, mesh, nets::on_backend(b, inputs.joints));
+    case Network::tree:
+      return nets::tree_net(b, nets::on_backend(b, inputs.joints), nets::on_backend(b, inputs.tree));
     case Network::skin:
       return nets::rignet::skin_net(b, mesh, b.tensor(inputs.skin_features, inputs.mesh.batch.rows(), nets::rignet::skin_inputs));
     case Network::bind:

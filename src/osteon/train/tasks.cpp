@@ -29,6 +29,8 @@ Network network_of(Task task) {
       return Network::bones;
     case Task::root:
       return Network::root;
+    case Task::tree:
+      return Network::tree;
     case Task::skin:
       return Network::skin;
     case Task::bind:
@@ -41,7 +43,7 @@ Network network_of(Task task) {
 // them, and two thirds of the head's channels never fire. With these figures they begin small and around zero.
 void quieten_global_features(Network network, Parameters& parameters) {
   if (network == Network::bones || network == Network::root) return;  // 64 and 128 channels beside as many others: no trouble
-  if (network == Network::bind || network == Network::votes) return;  // not more than 256 beside 455
+  if (network == Network::bind || network == Network::votes || network == Network::tree) return;  // not more than 256 beside 455
   const char* last_norm = network == Network::skin ? "global.1.norm" : "global.0.norm";
   parameters.at(std::string(last_norm) + ".weight").fill_(0.2);
   parameters.at(std::string(last_norm) + ".bias").fill_(-0.7);
@@ -186,6 +188,16 @@ Figures root_figures(const Tensor& logits, const dataset::Batch& batch) {
   return {{"loss", root_loss(logits, batch.inputs.joints.batch.offsets, batch.targets.root).item<double>()}, {"accuracy", right}};
 }
 
+// The parents of all joints of one skeleton. A joint's candidates are the rows of its pairs.
+Figures tree_figures(const Tensor& logits, const dataset::Batch& batch) {
+  const std::int64_t joints = batch.inputs.joints.batch.rows();
+  const Tensor of_joint = logits.view({joints, joints}).log_softmax(1);
+  const Tensor wanted = at::tensor(batch.targets.parents, at::kLong).to(logits.device());
+  return {{"loss", tree_loss(logits, batch.inputs.joints.batch.offsets, batch.targets.parents).item<double>()},
+          {"parents", (of_joint.argmax(1) == wanted).to(at::kFloat).mean().item<double>()},
+          {"root", of_joint.diagonal().argmax().item<std::int64_t>() == batch.targets.root[0] ? 1.0 : 0.0}};
+}
+
 // The reference's weight on other bones than the five is lost whatever the network says: it counts in full.
 Figures skin_figures(const Tensor& logits, const Tensor& weights, const Tensor& covered) {
   const Tensor difference = (logits.softmax(1) - weights * covered.unsqueeze(1)).abs().sum(1) + (1.0 - covered);
@@ -204,17 +216,19 @@ Figures figures_of(Task task, Model& model, const dataset::Batch& batch, const T
   if (task == Task::attention) return attention_figures(out, tensor_of(batch.targets.attention, 1, device));
   if (task == Task::bones) return bone_figures(out, tensor_of(batch.targets.connected, 1, device));
   if (task == Task::root) return root_figures(out, batch);
+  if (task == Task::tree) return tree_figures(out, batch);
   return skin_figures(skin_logits(task, out, batch), skin_targets(batch, device), tensor_of(batch.targets.skin_share, 1, device));
 }
 
-bool has_targets(Task task, const dataset::Example& example) {
-  return (task != Task::bones && task != Task::root) || example.character.joints() > 1;
-}
+bool has_targets(Task task, const dataset::Example& example) { return !is_about_pairs(task) || example.character.joints() > 1; }
 
 }  // namespace
 
+bool is_about_pairs(Task task) { return task == Task::bones || task == Task::root || task == Task::tree; }
+
 dataset::Parts parts_of(Task task) {
-  if (task == Task::bones || task == Task::root) return dataset::Parts::pairs;
+  if (task == Task::tree) return dataset::Parts::tree;
+  if (is_about_pairs(task)) return dataset::Parts::pairs;
   if (task == Task::bind) return dataset::Parts::bind;
   return task == Task::skin ? dataset::Parts::skin : dataset::Parts::joints;
 }
@@ -244,6 +258,7 @@ at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, c
   if (task == Task::attention) return attention_loss(out, tensor_of(batch.targets.attention, 1, device));
   if (task == Task::bones) return bone_loss(out, tensor_of(batch.targets.connected, 1, device));
   if (task == Task::root) return root_loss(out, batch.inputs.joints.batch.offsets, batch.targets.root);
+  if (task == Task::tree) return tree_loss(out, batch.inputs.joints.batch.offsets, batch.targets.parents);
   return skin_loss(skin_logits(task, out, batch), skin_targets(batch, device), tensor_of(batch.targets.skin_share, 1, device));
 }
 

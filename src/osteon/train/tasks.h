@@ -19,6 +19,7 @@ enum class Task {
   votes,      // rignet.votes: displacement and attention of one network, by the density of its votes
   bones,
   root,
+  tree,  // both in one network: every joint's parent
   skin,
   bind,
 };
@@ -32,6 +33,9 @@ struct TaskOptions {
   double density_weight = 0.05;   // votes: of the density at the joints, against chamfer(q, joints)
   double density_width = 0.03;    // of its kernel; longest side = 1
 };
+
+// Whether it learns which joints belong together: characters with a single joint have nothing to show.
+bool is_about_pairs(Task task);
 
 // What the task reads of a character.
 dataset::Parts parts_of(Task task);
@@ -48,6 +52,7 @@ at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, c
 //   collapse    the same of the shifted points that have attention above 0.1 of the mesh's largest
 //   bones       loss, accuracy, precision and recall of the pairs with probability over 0.5 (mean of both orders)
 //   root        loss, accuracy
+//   tree        loss, parents (how often the likeliest parent is right), root (how often the likeliest root is)
 //   skin, bind  loss, l1 (mean over vertices of the summed differences to the reference weights)
 std::map<std::string, double> validate(Task task, Model& model, std::span<const dataset::Example> examples, const TaskOptions& options);
 

@@ -34,6 +34,8 @@ std::string task_name(Task task) {
       return "bones";
     case Task::root:
       return "root";
+    case Task::tree:
+      return "tree";
     case Task::skin:
       return "skin";
     case Task::bind:

@@ -9,6 +9,9 @@
 
 #include "osteon/infer/model_folder.h"
 #include "osteon/infer/rignet.h"
+#ifdef OSTEON_TORCH
+#include "osteon/torch_infer/torch_runner.h"
+#endif
 
 namespace osteon::app {
 
@@ -17,6 +20,7 @@ struct ModelOptions {
   std::string name = "rignet";
   std::optional<std::filesystem::path> folder;
   tensor::Precision precision = tensor::Precision::f32;
+  std::string device;  // empty: oneDNN on the CPU
 
   void add_to(CLI::App& command) {
     CLI::Option* by_name = command.add_option("--model", name, "Which of the shipped networks: rignet (ours) or rignet-2020 (the paper's)")
@@ -29,8 +33,18 @@ struct ModelOptions {
         ->transform(CLI::CheckedTransformer(precisions))
         ->type_name("f32|bf16")
         ->default_str("f32");
+#ifdef OSTEON_TORCH
+    command.add_option("--device", device,
+                       "Run the networks on LibTorch, on this device: cpu, cuda or cuda:N (default: oneDNN on the CPU)");
+#endif
   }
-  infer::RignetModels load() const { return infer::RignetModels::load(folder ? *folder : infer::find_models(name), precision); }
+  infer::RignetModels load() const {
+    const std::filesystem::path weights = folder ? *folder : infer::find_models(name);
+#ifdef OSTEON_TORCH
+    if (!device.empty()) return infer::RignetModels::load(weights, torch_infer::torch_runners(device));
+#endif
+    return infer::RignetModels::load(weights, precision);
+  }
 };
 
 }  // namespace osteon::app

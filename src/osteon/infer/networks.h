@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <memory>
 #include <span>
 
 #include "osteon/base/types.h"
@@ -23,5 +26,15 @@ struct NetworkInput {
 // The network's output as in nets/rignet.h (logits). Backend: Loops or Onednn; instantiated in networks.cpp.
 template <class Backend>
 Matrix run(nets::rignet::Network network, Backend& backend, const NetworkInput& input);
+
+// One network with its weights, ready to run. Several threads may run it at the same time.
+class NetworkRunner {
+ public:
+  virtual ~NetworkRunner() = default;
+  virtual Matrix run(const NetworkInput& input) const = 0;
+};
+
+// Makes the runner of a network from its file of weights. Throws Error where the file cannot be used.
+using RunnerFactory = std::function<std::unique_ptr<NetworkRunner>(nets::rignet::Network network, const std::filesystem::path& weights)>;
 
 }  // namespace osteon::infer

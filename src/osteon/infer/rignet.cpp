@@ -19,10 +19,12 @@
 namespace osteon::infer {
 
 struct RignetModels::Networks {
-  std::array<std::unique_ptr<Onednn>, nets::rignet::kNetworks.size()> by_network;  // those that are not in the folder are empty
+  std::array<std::unique_ptr<NetworkRunner>, nets::rignet::kNetworks.size()> by_network;  // those that are not in the folder are empty
 
   bool has(nets::rignet::Network network) const { return by_network[static_cast<std::size_t>(network)] != nullptr; }
-  Onednn& operator[](nets::rignet::Network network) const { return *by_network[static_cast<std::size_t>(network)]; }
+  Matrix run(nets::rignet::Network network, const NetworkInput& input) const {
+    return by_network[static_cast<std::size_t>(network)]->run(input);
+  }
 };
 
 namespace {
@@ -50,8 +52,20 @@ std::vector<Network> networks_in(const fs::path& folder) {
   return networks;
 }
 
+// By oneDNN, on the CPU.
+class OnednnRunner : public NetworkRunner {
+ public:
+  OnednnRunner(Network network, const fs::path& weights, tensor::Precision precision)
+      : network_(network), backend_(load_parameters(weights, nets::rignet::parameter_shapes(network)), precision) {}
+  Matrix run(const NetworkInput& input) const override { return infer::run(network_, backend_, input); }
+
+ private:
+  Network network_;
+  mutable Onednn backend_;  // packs weights when it first needs them, guarded by itself
+};
+
 // Runs the network on a single vertex, so that its weights are packed before the first mesh comes.
-void pack_weights(Network network, Onednn& backend) {
+void pack_weights(const NetworkRunner& network) {
   const Vec3f origin = Vec3f::Zero();
   const float on_the_plane = 0;
   const std::uint32_t no_neighbours[] = {0, 0};
@@ -65,7 +79,7 @@ void pack_weights(Network network, Onednn& backend) {
   of_votes.add(std::vector<float>(nets::vote_features), one, one, 0);
   nets::TreeArrays of_tree;
   of_tree.add(std::vector<float>(nets::tree_joint_features), std::vector<float>(nets::tree_pair_features));
-  run(network, backend, {mesh, &joints, &pairs, features, &choices, &of_votes, &of_tree});
+  network.run({mesh, &joints, &pairs, features, &choices, &of_votes, &of_tree});
 }
 
 void add_edges(nets::EdgeArrays& edges, NeighbourView neighbours) { edges.add(neighbours.offsets, neighbours.members, 0); }
@@ -144,13 +158,17 @@ RignetModels RignetModels::load() { return load(find_models("rignet")); }
 RignetModels RignetModels::load(const fs::path& folder, tensor::Precision precision) {
   if (precision == tensor::Precision::bf16 && !tensor::has_bf16())
     throw Error("this processor does not multiply bf16 (AVX512-BF16 or AMX), expected --precision f32");
+  return load(folder,
+              [&](Network network, const fs::path& weights) { return std::make_unique<OnednnRunner>(network, weights, precision); });
+}
+
+RignetModels RignetModels::load(const fs::path& folder, const RunnerFactory& make_runner) {
   const std::vector<Network> present = networks_in(folder);
   auto networks = std::make_unique<Networks>();
   parallel_for(present.size(), 1, [&](std::size_t i, std::size_t) {
-    const Network network = present[i];
-    auto backend = std::make_unique<Onednn>(load_parameters(file_of(folder, network), nets::rignet::parameter_shapes(network)), precision);
-    pack_weights(network, *backend);
-    networks->by_network[static_cast<std::size_t>(network)] = std::move(backend);
+    auto runner = make_runner(present[i], file_of(folder, present[i]));
+    pack_weights(*runner);
+    networks->by_network[static_cast<std::size_t>(present[i])] = std::move(runner);
   });
   return RignetModels(std::move(networks));
 }
@@ -161,9 +179,9 @@ RignetModels::RignetModels(RignetModels&&) noexcept = default;
 RignetModels& RignetModels::operator=(RignetModels&&) noexcept = default;
 
 JointVotes RignetModels::votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs) const {
-  const auto output = [&](Network network) { return run(network, (*networks_)[network], {mesh}); };
+  const auto output = [&](Network network) { return networks_->run(network, {mesh}); };
   if (!networks_->has(Network::votes)) return {output(Network::joints), sigmoid(output(Network::attention))};
-  const Matrix both = run(Network::votes, (*networks_)[Network::votes], {.mesh = mesh, .votes = &vote_inputs});
+  const Matrix both = networks_->run(Network::votes, {.mesh = mesh, .votes = &vote_inputs});
   const Eigen::Map<const Matrix> features(vote_inputs.features.data(), both.rows(), nets::vote_features);
   return {features.middleCols(nets::vote_to_middle, 3) + nets::vote_unit * both.leftCols(3), sigmoid(both.rightCols(1))};
 }
@@ -171,7 +189,7 @@ JointVotes RignetModels::votes(const nets::MeshArrays& mesh, const nets::VoteArr
 bool RignetModels::finds_parents() const { return networks_->has(Network::tree); }
 
 Matrix RignetModels::parent_probabilities(const nets::JointArrays& joints, const nets::TreeArrays& tree) const {
-  const Matrix logits = run(Network::tree, (*networks_)[Network::tree], {.mesh = {}, .joints = &joints, .tree = &tree});
+  const Matrix logits = networks_->run(Network::tree, {.mesh = {}, .joints = &joints, .tree = &tree});
   Matrix out = Eigen::Map<const Matrix>(logits.data(), joints.batch.rows(), joints.batch.rows());
   for (auto row : out.rowwise()) {
     row = (row.array() - row.maxCoeff()).exp().matrix();
@@ -186,12 +204,12 @@ Matrix RignetModels::bone_probabilities(const nets::MeshArrays& mesh, const nets
   assert(pair_features.rows() == pair_count);
   if (pair_count == 0) return Matrix(0, 1);
   const nets::PairArrays pairs = pairs_in_both_orders(count, pair_features);
-  const Matrix both = sigmoid(run(Network::bones, (*networks_)[Network::bones], {mesh, &joints, &pairs}));
+  const Matrix both = sigmoid(networks_->run(Network::bones, {mesh, &joints, &pairs}));
   return 0.5f * (both.topRows(pair_count) + both.bottomRows(pair_count));
 }
 
 Matrix RignetModels::root_probabilities(const nets::MeshArrays& mesh, const nets::JointArrays& joints) const {
-  const Matrix logits = run(Network::root, (*networks_)[Network::root], {mesh, &joints});
+  const Matrix logits = networks_->run(Network::root, {mesh, &joints});
   const Matrix shares = (logits.array() - logits.maxCoeff()).exp().matrix();
   return shares / shares.sum();
 }
@@ -199,7 +217,7 @@ Matrix RignetModels::root_probabilities(const nets::MeshArrays& mesh, const nets
 bool RignetModels::binds() const { return networks_->has(Network::bind); }
 
 Matrix RignetModels::bind_weights(const nets::MeshArrays& mesh, const nets::BindArrays& choices, int k) const {
-  const Matrix logits = run(Network::bind, (*networks_)[Network::bind], {.mesh = mesh, .choices = &choices});
+  const Matrix logits = networks_->run(Network::bind, {.mesh = mesh, .choices = &choices});
   Matrix out = Matrix::Zero(mesh.batch.rows(), k);
   for (Eigen::Index v = 0; v < out.rows(); ++v) {
     const Eigen::Index first = choices.offsets[static_cast<std::size_t>(v)];
@@ -215,7 +233,7 @@ Matrix RignetModels::bind_weights(const nets::MeshArrays& mesh, const nets::Bind
 Matrix RignetModels::skin_weights(const nets::MeshArrays& mesh, const Matrix& features, const NearestBones& nearest) const {
   assert(nearest.rows() == features.rows() && nearest.cols() == nets::rignet::skin_bones);
   const std::span<const float> numbers(features.data(), static_cast<std::size_t>(features.size()));
-  return masked_softmax(run(Network::skin, (*networks_)[Network::skin], {mesh, nullptr, nullptr, numbers}), nearest);
+  return masked_softmax(networks_->run(Network::skin, {mesh, nullptr, nullptr, numbers}), nearest);
 }
 
 }  // namespace osteon::infer

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "osteon/base/types.h"
+#include "osteon/infer/networks.h"
 #include "osteon/nets/graph.h"
 #include "osteon/tensor/precision.h"
 
@@ -38,6 +39,8 @@ class RignetModels {
   // bones and root for tree, skin for bind. Throws one Error that names each missing file, or each parameter of a file that does not fit.
   // Throws Error where products in bf16 are asked for and this processor has none.
   static RignetModels load(const std::filesystem::path& folder, tensor::Precision precision = tensor::Precision::f32);
+  // By other means than oneDNN on the CPU (torch_infer/torch_runner.h). `make_runner` may be called by several threads at once.
+  static RignetModels load(const std::filesystem::path& folder, const RunnerFactory& make_runner);
   static RignetModels load();  // from where find_models("rignet") says
 
   ~RignetModels();

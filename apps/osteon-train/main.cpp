@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "curves_command.h"
 #include "finetune_command.h"
 #include "osteon/base/progress.h"
 #include "rignet_command.h"
@@ -28,6 +29,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Trains Osteon's networks", "osteon-train"};
   app.require_subcommand(1);
   app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {} (see --help)\n", e.what()); });
+  osteon::app::add_curves_command(app);
   osteon::app::add_finetune_command(app);
   osteon::app::add_rignet_commands(app);
   try {

@@ -121,6 +121,23 @@ TEST(Finetune, refuses_folders_that_it_cannot_learn_from) {
   EXPECT_THAT(error_of("one --init-models empty"), HasSubstr("votes.safetensors: not there"));
 }
 
+TEST(Curves, draw_a_line_for_each_log) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"first", "second"})
+    std::ofstream(folder / fmt::format("{}.log", name)) << R"({"step":1,"seconds":1,"kind":"training","loss":3.0}
+{"step":10,"seconds":9,"kind":"validation","loss":2.0,"l1":0.5}
+{"step":20,"seconds":19,"kind":"validation","loss":1.5,"l1":0.4}
+)";
+  ASSERT_EQ(osteon_train(folder, "curves first.log second.log -o curves.svg --figure l1").code, 0);
+  EXPECT_THAT(content(folder / "curves.svg"),
+              AllOf(HasSubstr("<svg"), HasSubstr("first"), HasSubstr("second"), HasSubstr("validation l1")));
+  const Outcome none = osteon_train(folder, "curves first.log -o none.svg --figure f1");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("first.log"), HasSubstr("f1")));
+  std::ofstream(folder / "bad.log") << "nonsense\n";
+  EXPECT_THAT(osteon_train(folder, "curves bad.log -o none.svg").err, AllOf(HasSubstr("bad.log"), HasSubstr("line 1")));
+}
+
 class FinetuneData : public testing::Test {
  protected:
   static train::FinetuneData data() {

@@ -38,7 +38,7 @@ MergedSkeleton merge_coincident_joints(const Skeleton& skeleton, float distance)
       parent = out.from_original[*skeleton.parents[j]];
       same = joint_at(out.skeleton, *parent, position, distance);
     }
-    out.from_original.push_back(same ? *same : out.skeleton.add(skeleton.names[j], parent, position));
+    out.from_original.push_back(same ? *same : out.skeleton.add(skeleton.names[j], parent, position, skeleton.rest_orientations[j]));
   }
   return out;
 }

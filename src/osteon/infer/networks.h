@@ -17,6 +17,7 @@ struct NetworkInput {
   std::span<const float> skin_features = {};  // skin: (V,43)
   const nets::BindArrays* choices = nullptr;  // bind
   const nets::VoteArrays* votes = nullptr;
+  const nets::NeuroArrays* neuro = nullptr;
 };
 
 // The network's output as in nets/rignet.h (logits). Backend: Loops or Onednn; instantiated in networks.cpp.

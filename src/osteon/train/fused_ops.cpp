@@ -271,7 +271,7 @@ Tensor FusedOps::mlp(const nets::Path& path, const nets::Input<FusedOps>& input,
   nets::Input<FusedOps> x = input;
   for (const int width : widths) {
     const nets::Path here = path / step++;
-    x = {relu_norm(linear_of(here / "linear", x, width), norm(here / "norm"))};
+    x = {relu_norm(here / "norm", linear_of(here / "linear", x, width))};
   }
   return x.front().values;
 }

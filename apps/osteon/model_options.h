@@ -8,6 +8,7 @@
 #include <string>
 
 #include "osteon/infer/model_folder.h"
+#include "osteon/infer/neuroskinning.h"
 #include "osteon/infer/rignet.h"
 
 namespace osteon::app {
@@ -29,6 +30,10 @@ struct ModelOptions {
         ->transform(CLI::CheckedTransformer(precisions))
         ->type_name("f32|bf16")
         ->default_str("f32");
+  }
+  // Those of NeuroSkinning: the same options, but another default.
+  infer::NeuroskinningModel load_neuroskinning() const {
+    return infer::NeuroskinningModel::load(folder ? *folder : infer::find_models(name == "rignet" ? "neuroskinning" : name), precision);
   }
   infer::RignetModels load() const { return infer::RignetModels::load(folder ? *folder : infer::find_models(name), precision); }
 };

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/neuroskinning.h"
+
+#include <algorithm>
+
+#include "osteon/nets/dry_run.h"
+#include "osteon/synth/character.h"
+#include "pipelines/untrained.h"
+#include "skin/heaps.h"
+#include "skin/touching.h"
+#include "support/expect.h"
+#include "support/numbers.h"
+
+namespace osteon::pipelines {
+namespace {
+
+using test::LastLayer;
+using test::Network;
+
+// A network that was never trained, with a super skeleton of the given slots. With its last layer zero, ours gives the geometric shares.
+infer::NeuroskinningModel untrained(Network network, LastLayer last = LastLayer::zero, std::size_t slots = nets::neuro_slots) {
+  std::vector<skin::Slot> all;
+  for (std::size_t i = 0; i < slots; ++i) all.push_back({{}, {0.0f, static_cast<float>(i) / static_cast<float>(slots), 0.0f}, 0});
+  const test::TemporaryFolder folder;
+  Safetensors content = test::random_parameters(network, 3, last);
+  content.metadata["super_skeleton"] = skin::SuperSkeleton(all).to_json();
+  save_safetensors(folder / (std::string(nets::rignet::name_of(network)) + ".safetensors"), content);
+  return infer::NeuroskinningModel::load(folder.path());
+}
+
+Rig biped() { return synth::make_character(synth::Kind::Biped, 3, {64, synth::Finish::Smooth}); }
+
+void expect_exact(const SkinWeights& weights, const TriangleMesh& mesh, const Skeleton& skeleton) {
+  validate(weights, mesh.positions.size(), skeleton.size());
+  for (VertexId v : mesh.positions.ids()) {
+    double sum = 0.0;
+    for (const Influence& i : weights[v]) sum += static_cast<double>(i.weight);
+    ASSERT_NEAR(sum, 1.0, 3e-7);
+    ASSERT_LE(weights[v].size(), 4u);
+  }
+}
+
+class Neuroskinning : public testing::TestWithParam<Network> {};
+INSTANTIATE_TEST_SUITE_P(networks, Neuroskinning, testing::Values(Network::neuroskinning, Network::neuroskinning_2019),
+                         [](const auto& network) { return nets::rignet::name_of(network.param); });
+
+TEST_P(Neuroskinning, binds_every_vertex_of_any_heap_of_pieces_to_any_skeleton) {
+  const auto model = untrained(GetParam(), LastLayer::random);
+  for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+    Random random(seed);
+    const TriangleMesh mesh = test::heap_of_pieces(random);
+    const Skeleton skeleton = test::any_skeleton(random);
+    SCOPED_TRACE(seed);
+    expect_exact(neuroskinning_weights(mesh, skeleton, model).weights, mesh, skeleton);
+  }
+}
+
+TEST_P(Neuroskinning, binds_skeletons_of_more_joints_than_slots) {
+  const auto model = untrained(GetParam(), LastLayer::random, 20);
+  const Rig rig = biped();
+  Skeleton many = rig.skeleton;
+  while (many.size() < 163) {
+    const auto parent = static_cast<JointId>(many.size() % rig.skeleton.size());
+    many.add("face" + std::to_string(many.size()), parent, many.rest_positions[parent] + Vec3f(0.0f, 0.01f, 0.003f * static_cast<float>(many.size() % 7)));
+  }
+  expect_exact(neuroskinning_weights(rig.mesh, many, model).weights, rig.mesh, many);
+}
+
+TEST_P(Neuroskinning, is_the_same_for_any_order_of_vertices_and_any_number_of_threads) {
+  const auto model = untrained(GetParam(), LastLayer::random);
+  const Rig rig = biped();
+  const SkinWeights weights = neuroskinning_weights(rig.mesh, rig.skeleton, model).weights;
+  {
+    const test::ScopedThreads one(1);
+    EXPECT_EQ(neuroskinning_weights(rig.mesh, rig.skeleton, model).weights, weights);
+  }
+  TriangleMesh reversed;
+  const auto last = static_cast<std::uint32_t>(rig.mesh.positions.size() - 1);
+  for (std::uint32_t v = 0; v <= last; ++v) reversed.positions.push_back(rig.mesh.positions[VertexId{last - v}]);
+  for (Triangle t : rig.mesh.faces) {
+    for (VertexId& v : t) v = VertexId{last - static_cast<std::uint32_t>(v)};
+    reversed.faces.push_back(t);
+  }
+  const SkinWeights other = neuroskinning_weights(reversed, rig.skeleton, model).weights;
+  for (std::uint32_t v = 0; v <= last; ++v) {
+    const auto a = weights[VertexId{v}], b = other[VertexId{last - v}];
+    ASSERT_TRUE(std::ranges::equal(a, b)) << v;
+  }
+}
+
+TEST(NeuroskinningOurs, a_network_that_knows_nothing_keeps_touching_parts_apart) {
+  const auto model = untrained(Network::neuroskinning);
+  const test::Bound two = test::touching_capsules(2);
+  const SkinWeights weights = neuroskinning_weights(two.mesh, two.skeleton, model).weights;
+  EXPECT_LT(test::largest_foreign_weight(weights, {JointId{1}, JointId{2}}, [&](VertexId v) { return index(v) < two.mesh.positions.size() / 2; }),
+            0.01f);
+}
+
+TEST(NeuroskinningOurs, of_joints_at_one_place_the_first_gets_the_weights) {
+  const auto model = untrained(Network::neuroskinning);
+  const Rig rig = biped();
+  Skeleton stacked = rig.skeleton;
+  for (JointId j : rig.skeleton.names.ids()) stacked.add(rig.skeleton.names[j] + "_ctrl", j, rig.skeleton.rest_positions[j]);
+  EXPECT_EQ(neuroskinning_weights(rig.mesh, stacked, model).weights, neuroskinning_weights(rig.mesh, rig.skeleton, model).weights);
+}
+
+}  // namespace
+}  // namespace osteon::pipelines

@@ -76,8 +76,11 @@ Words sorted_out(const std::vector<std::string>& words, Side& side) {
   static const std::set<std::string> twists{"twist", "roll"}, ends{"end", "nub", "tip", "leaf"},
       controls{"ik", "ctrl", "control", "pole", "target", "pt"};
   Words out;
-  for (const std::string& word : words) {
-    if (const auto found = side_of(word)) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word == "bip" && i + 1 < words.size() && is_digit(words[i + 1][0])) {
+      ++i;  // Bip01 is the whole rig
+    } else if (const auto found = side_of(word)) {
       side = *found;
     } else if (is_digit(word[0])) {
       out.number = word.size() > 6 ? kLargestNumber : std::stoi(word);

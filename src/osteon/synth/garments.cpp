@@ -50,10 +50,15 @@ class Tailor {
   }
 
  private:
+  std::optional<JointId> found(const std::string& name) const {
+    const auto at = std::ranges::find(rig_.skeleton.names, name);
+    if (at == rig_.skeleton.names.end()) return std::nullopt;
+    return static_cast<JointId>(at - rig_.skeleton.names.begin());
+  }
   JointId named(const std::string& name) const {
-    const auto found = std::ranges::find(rig_.skeleton.names, name);
-    if (found == rig_.skeleton.names.end()) throw Error("dressed: the skeleton has no joint '{}', expected a biped of the generator", name);
-    return static_cast<JointId>(found - rig_.skeleton.names.begin());
+    const auto joint = found(name);
+    if (!joint) throw Error("dressed: the skeleton has no joint '{}', expected a biped of the generator", name);
+    return *joint;
   }
   const Vec3f& at(JointId joint) const { return rig_.skeleton.rest_positions[joint]; }
 
@@ -95,9 +100,9 @@ class Tailor {
 
   void add_skirt() {
     constexpr int rows = 10, columns = 28, chains = 8;
-    const JointId hips = named("Hips"), left = named("LeftUpLeg"), right = named("RightUpLeg"), knee = named("LeftLeg");
-    const float waist = at(hips).y() + 0.2f * (at(hips).y() - at(knee).y());
-    const float hem = waist - random_.uniform(0.8f, 1.8f) * (waist - at(knee).y());
+    const JointId hips = named("Hips"), left = named("LeftUpLeg"), right = named("RightUpLeg");
+    const float knee = 0.5f * at(left).y(), waist = at(hips).y() + 0.2f * (at(hips).y() - knee);
+    const float hem = waist - random_.uniform(0.8f, 1.8f) * (waist - knee);
     const float flare = random_.uniform(0.15f, 0.5f) * (waist - hem);
     const Vec3f middle(0.0f, 0.0f, at(hips).z());
     const auto place = [&](float t, float angle) -> Vec3f {
@@ -154,8 +159,8 @@ class Tailor {
     const float width = random_.uniform(1.6f, 3.2f);
     const bool has_joint = random_.uniform() < 0.5f;
     for (const std::string side : {"Left", "Right"}) {
-      const JointId arm = named(side + "Arm"), forearm = named(side + "ForeArm"), hand = named(side + "Hand");
-      const Vec3f a = at(arm), b = at(forearm), c = at(hand);
+      const JointId arm = named(side + "Arm"), hand = named(side + "Hand"), forearm = found(side + "ForeArm").value_or(arm);
+      const Vec3f a = at(arm), c = at(hand), b = forearm == arm ? Vec3f(0.5f * (a + c)) : at(forearm);
       const float thick = 0.14f * ((b - a).norm() + (c - b).norm());
       std::optional<JointId> hanging;
       if (has_joint) hanging = rig_.skeleton.add(side + "Sleeve", forearm, b + 0.7f * (c - b) - Vec3f(0.0f, 0.5f * width * thick, 0.0f));

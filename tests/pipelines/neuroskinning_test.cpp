@@ -2,9 +2,14 @@
 #include "osteon/pipelines/neuroskinning.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
 
 #include "osteon/nets/dry_run.h"
+#include "osteon/skin/super_skeleton.h"
 #include "osteon/synth/character.h"
+#include "osteon/synth/garments.h"
 #include "pipelines/untrained.h"
 #include "skin/heaps.h"
 #include "skin/touching.h"
@@ -102,6 +107,60 @@ TEST(NeuroskinningOurs, of_joints_at_one_place_the_first_gets_the_weights) {
   Skeleton stacked = rig.skeleton;
   for (JointId j : rig.skeleton.names.ids()) stacked.add(rig.skeleton.names[j] + "_ctrl", j, rig.skeleton.rest_positions[j]);
   EXPECT_EQ(neuroskinning_weights(rig.mesh, stacked, model).weights, neuroskinning_weights(rig.mesh, rig.skeleton, model).weights);
+}
+
+// Mean over vertices first .. last-1 of the summed differences.
+double difference(const SkinWeights& a, const SkinWeights& b, std::size_t first, std::size_t last) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < last; ++i) {
+    std::map<JointId, double> row;
+    for (const Influence& w : a[static_cast<VertexId>(i)]) row[w.joint] += static_cast<double>(w.weight);
+    for (const Influence& w : b[static_cast<VertexId>(i)]) row[w.joint] -= static_cast<double>(w.weight);
+    for (const auto& [joint, d] : row) sum += std::abs(d);
+  }
+  return sum / static_cast<double>(last - first);
+}
+
+// The shipped network on characters of seeds that it was not trained with.
+class NeuroskinningShipped : public testing::Test {
+ protected:
+  static const infer::NeuroskinningModel& model() {
+    static const auto loaded = infer::NeuroskinningModel::load();
+    return loaded;
+  }
+};
+
+TEST_F(NeuroskinningShipped, binds_clothes_to_their_own_joints_and_keeps_the_body_off_them) {
+  double of_garments = 0.0, of_bodies = 0.0, leak = 0.0;
+  constexpr std::uint64_t first = 301, last = 308;
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
+    const synth::DressedCharacter character = synth::dressed(synth::make_character(synth::Kind::Biped, seed, {80, synth::Finish::Smooth}), seed);
+    const Rig& rig = character.rig;
+    const SkinWeights weights = neuroskinning_weights(rig.mesh, rig.skeleton, model()).weights;
+    expect_exact(weights, rig.mesh, rig.skeleton);
+    constexpr double share = 1.0 / (last - first + 1);
+    of_garments += share * difference(weights, rig.weights, character.body_vertices, rig.mesh.positions.size());
+    of_bodies += share * difference(weights, rig.weights, 0, character.body_vertices);
+    for (std::size_t v = 0; v < character.body_vertices; ++v)
+      for (const Influence& i : weights[static_cast<VertexId>(v)])
+        if (index(i.joint) >= character.body_joints) leak += share * static_cast<double>(i.weight) / static_cast<double>(character.body_vertices);
+  }
+  RecordProperty("garments_l1", std::to_string(of_garments));
+  RecordProperty("bodies_l1", std::to_string(of_bodies));
+  RecordProperty("body_weight_on_garments_joints", std::to_string(leak));
+  EXPECT_LT(of_garments, 0.5);
+  EXPECT_LT(of_bodies, 0.3);
+  EXPECT_LT(leak, 0.02);
+}
+
+TEST_F(NeuroskinningShipped, needs_no_names) {
+  const Rig rig = synth::make_character(synth::Kind::Biped, 311, {80, synth::Finish::Smooth});
+  const SkinWeights named = neuroskinning_weights(rig.mesh, rig.skeleton, model()).weights;
+  Skeleton nameless = rig.skeleton;
+  for (JointId j : nameless.names.ids()) nameless.names[j] = "Bone." + std::to_string(index(j));
+  const SkinWeights unnamed = neuroskinning_weights(rig.mesh, nameless, model()).weights;
+  EXPECT_LT(difference(named, rig.weights, 0, rig.mesh.positions.size()), 0.3);
+  EXPECT_LT(difference(unnamed, rig.weights, 0, rig.mesh.positions.size()), 0.35);
 }
 
 }  // namespace

@@ -40,13 +40,13 @@ class Tailor {
   Tailor(const Rig& body, std::uint64_t seed) : rig_(body), random_(Random(seed).fork(77)) {}
 
   DressedCharacter dress() {
-    const std::size_t body_vertices = rig_.mesh.positions.size();
+    const std::size_t body_vertices = rig_.mesh.positions.size(), body_joints = rig_.skeleton.size();
     const std::uint64_t choice = 1 + random_.below(7);  // at least one of the three
     if (choice & 1) add_skirt();
     if (choice & 2) add_cloak();
     if (choice & 4) add_sleeves();
     validate(rig_);
-    return {std::move(rig_), body_vertices};
+    return {std::move(rig_), body_vertices, body_joints};
   }
 
  private:

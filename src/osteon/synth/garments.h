@@ -7,10 +7,10 @@
 
 namespace osteon::synth {
 
-// A character with what it wears: garments' vertices come after those of the body.
+// A character with what it wears: garments' vertices and joints come after those of the body.
 struct DressedCharacter {
   Rig rig;
-  std::size_t body_vertices;
+  std::size_t body_vertices, body_joints;
 };
 
 // Clothes as production characters have them: open sheets beside the body that touch, cross and hang free of it. By the seed: a skirt, on

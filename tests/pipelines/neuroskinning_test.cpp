@@ -101,12 +101,30 @@ TEST(NeuroskinningOurs, a_network_that_knows_nothing_keeps_touching_parts_apart)
             0.01f);
 }
 
-TEST(NeuroskinningOurs, of_joints_at_one_place_the_first_gets_the_weights) {
+TEST(NeuroskinningOurs, of_joints_at_one_place_the_one_whose_bone_it_is_gets_the_weights) {
   const auto model = untrained(Network::neuroskinning);
   const Rig rig = biped();
   Skeleton stacked = rig.skeleton;
   for (JointId j : rig.skeleton.names.ids()) stacked.add(rig.skeleton.names[j] + "_ctrl", j, rig.skeleton.rest_positions[j]);
   EXPECT_EQ(neuroskinning_weights(rig.mesh, stacked, model).weights, neuroskinning_weights(rig.mesh, rig.skeleton, model).weights);
+
+  // Both capsules hang on joints of their own at one place, as fingers do on a palm.
+  test::Bound two = test::touching_capsules(2);
+  Skeleton fingers;
+  const JointId palm = fingers.add("palm", std::nullopt, {0, -0.5f, 0});
+  for (const float x : {-0.1f, 0.1f}) {
+    const JointId root = fingers.add(x < 0 ? "first" : "second", palm, {0, -0.2f, 0});
+    fingers.add(x < 0 ? "first_tip" : "second_tip", root, {x, 1, 0});
+  }
+  const SkinWeights weights = neuroskinning_weights(two.mesh, fingers, model).weights;
+  double of_first = 0.0, of_second = 0.0;
+  for (VertexId v : two.mesh.positions.ids())
+    for (const Influence& i : weights[v]) {
+      if (i.joint == JointId{1}) of_first += static_cast<double>(i.weight);
+      if (i.joint == JointId{3}) of_second += static_cast<double>(i.weight);
+    }
+  EXPECT_GT(of_first, 10.0);
+  EXPECT_NEAR(of_second / of_first, 1.0, 0.3);
 }
 
 // Mean over vertices first .. last-1 of the summed differences.

@@ -54,59 +54,71 @@ Body study(const TriangleMesh& mesh, const Skeleton& skeleton, const Neuroskinni
   return body;
 }
 
-// Softmax over the joints that each vertex may choose, (V,J); empty where the network gave no numbers.
-Matrix joint_weights(const Body& body, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro, const skin::SuperSkeleton& super,
-                     const skin::SlotAssignment& assignment) {
-  const Skeleton& skeleton = body.merged.skeleton;
-  const skin::BoneChoices choices = skin::bone_choices(body.mesh(), skeleton);
+// Which joints of the original stand for each joint of the merged skeleton.
+class Owners {
+ public:
+  explicit Owners(const Skeleton& original, const MergedSkeleton& merged) : original_(original), merged_(merged), first_(merged.skeleton.size()) {
+    for (std::size_t j = original.size(); j-- > 0;) first_[merged.from_original[static_cast<JointId>(j)]] = static_cast<JointId>(j);
+  }
+
+  JointId first(JointId joint) const { return first_[joint]; }
+  // Of the joints in one place, such as the roots of fingers, the one whose bone it is: the parent of the joint where the bone ends.
+  JointId of_bone(const geometry::BoneList& bones, std::size_t bone) const {
+    const auto start = static_cast<JointId>(bones.starts[bone]);
+    if (bones.ends[bone] < 0) return first_[start];
+    const auto parent = original_.parents[first_[static_cast<JointId>(bones.ends[bone])]];
+    return parent && merged_.from_original[*parent] == start ? *parent : first_[start];
+  }
+
+ private:
+  const Skeleton& original_;
+  const MergedSkeleton& merged_;
+  PerJoint<JointId> first_;
+};
+
+// Softmax over the joints that each vertex may choose, in the joints of the original, (V,J).
+Matrix joint_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
+                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment) {
+  const skin::BoneChoices choices = skin::bone_choices(body.mesh(), body.merged.skeleton);
   const skin::ChoiceRows rows =
-      skin::choice_rows(body.mesh().positions.raw(), body.normals, skeleton, choices, super, assignment, nets::neuro_kinds);
+      skin::choice_rows(body.mesh().positions.raw(), body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
   neuro.choices.add(rows.features, rows.offsets, rows.joints);
   neuro.joints = rows.joint_features;
   Matrix logits = model(body.graph, neuro);
   if (!logits.allFinite()) logits.setZero();
-  Matrix out = Matrix::Zero(static_cast<Eigen::Index>(body.mesh().positions.size()), static_cast<Eigen::Index>(skeleton.size()));
+  Matrix out = Matrix::Zero(choices.nearest.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()));
   for (Eigen::Index v = 0; v < out.rows(); ++v) {
     const auto first = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v)]);
     const auto last = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v) + 1]);
     const auto logit = [&](std::size_t row) { return logits(static_cast<Eigen::Index>(row), 0) + rows.log_shares[row]; };
-    float largest = logit(first);
+    float largest = logit(first), total = 0.0f;
     for (std::size_t row = first; row < last; ++row) largest = std::max(largest, logit(row));
-    for (std::size_t row = first; row < last; ++row) out(v, rows.joints[row]) += std::exp(logit(row) - largest);
-    out.row(v) /= out.row(v).sum();
+    for (std::size_t row = first; row < last; ++row) total += std::exp(logit(row) - largest);
+    for (std::size_t row = first; row < last; ++row) {
+      const auto bone = static_cast<std::size_t>(choices.nearest(v, static_cast<Eigen::Index>(row - first)));
+      out(v, static_cast<Eigen::Index>(index(owners.of_bone(choices.bones, bone)))) += std::exp(logit(row) - largest) / total;
+    }
   }
   return out;
 }
 
 // The same by the paper's network: softmax over the slots that the skeleton has.
-Matrix slot_weights(const Body& body, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro, const skin::SuperSkeleton& super,
-                    const skin::SlotAssignment& assignment) {
+Matrix slot_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
+                    const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment) {
   const Skeleton& skeleton = body.merged.skeleton;
   neuro.features = skin::slot_rows(body.mesh().positions.raw(), body.normals, skeleton, super, assignment, nets::neuro_slots);
   Matrix logits = model(body.graph, neuro);
   if (!logits.allFinite()) logits.setZero();
-  Matrix out = Matrix::Constant(logits.rows(), static_cast<Eigen::Index>(skeleton.size()), kAbsent);
+  Matrix out = Matrix::Constant(logits.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()), kAbsent);
   std::vector<bool> taken(super.slots().size(), false);
   for (JointId j : skeleton.names.ids()) {
     const std::size_t slot = assignment.slot[j];
-    if (!taken[slot]) out.col(static_cast<Eigen::Index>(index(j))) = logits.col(static_cast<Eigen::Index>(slot));
+    if (!taken[slot]) out.col(static_cast<Eigen::Index>(index(owners.first(j)))) = logits.col(static_cast<Eigen::Index>(slot));
     taken[slot] = true;
   }
   for (Eigen::Index v = 0; v < out.rows(); ++v) {
     out.row(v) = (out.row(v).array() - out.row(v).maxCoeff()).exp();
     out.row(v) /= out.row(v).sum();
-  }
-  return out;
-}
-
-// In the joints of the original: of those in one place the first gets all.
-Matrix on_original_joints(const Matrix& weights, const MergedSkeleton& merged) {
-  Matrix out = Matrix::Zero(weights.rows(), static_cast<Eigen::Index>(merged.from_original.size()));
-  std::vector<bool> done(merged.skeleton.size(), false);
-  for (JointId j : merged.from_original.ids()) {
-    const std::size_t column = index(merged.from_original[j]);
-    if (!done[column]) out.col(static_cast<Eigen::Index>(index(j))) = weights.col(static_cast<Eigen::Index>(column));
-    done[column] = true;
   }
   return out;
 }
@@ -123,9 +135,9 @@ NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skelet
   nets::NeuroArrays neuro;
   const auto near = geometry::geodesic_balls(body.mesh(), kPoolReach, nets::neuro_pooling.back() - 1).members;
   neuro.add_nearest(near.offsets, near.members, 0);
-  const Matrix raw = model.has_slots() ? slot_weights(body, model, neuro, super, assignment)
-                                       : joint_weights(body, model, neuro, super, assignment);
-  Matrix weights = on_original_joints(raw, body.merged);
+  const Owners owners(skeleton, body.merged);
+  Matrix weights = model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment)
+                                     : joint_weights(body, owners, model, neuro, super, assignment);
   for (int round = 0; round < options.smooth; ++round) weights = skin::smooth_rows(weights, body.ring);
   skin::prune_rows(weights, options.prune_share, options.max_influences);
   skin::fill_empty_rows(weights, body.mesh().positions, body.ring);

@@ -78,8 +78,8 @@ class Owners {
 
 // Softmax over the joints that each vertex may choose, in the joints of the original, (V,J).
 Matrix joint_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
-                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment) {
-  const skin::BoneChoices choices = skin::bone_choices(body.mesh(), body.merged.skeleton);
+                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, const skin::BoneChoiceOptions& options) {
+  const skin::BoneChoices choices = skin::bone_choices(body.mesh(), body.merged.skeleton, options);
   const skin::ChoiceRows rows =
       skin::choice_rows(body.mesh().positions.raw(), body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
   neuro.choices.add(rows.features, rows.offsets, rows.joints);
@@ -137,7 +137,7 @@ NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skelet
   neuro.add_nearest(near.offsets, near.members, 0);
   const Owners owners(skeleton, body.merged);
   Matrix weights = model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment)
-                                     : joint_weights(body, owners, model, neuro, super, assignment);
+                                     : joint_weights(body, owners, model, neuro, super, assignment, options.choices);
   for (int round = 0; round < options.smooth; ++round) weights = skin::smooth_rows(weights, body.ring);
   skin::prune_rows(weights, options.prune_share, options.max_influences);
   skin::fill_empty_rows(weights, body.mesh().positions, body.ring);

@@ -17,6 +17,7 @@ struct NeuroskinningOptions {
   std::size_t max_influences = 4;  // the paper's kappa
   int smooth = 0;                  // rounds over the working mesh's one-ring
   geometry::WorkingMeshOptions working_mesh = {};
+  skin::BoneChoiceOptions choices = {};
 };
 
 struct NeuroskinningResult {

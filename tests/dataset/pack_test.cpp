@@ -140,7 +140,8 @@ TEST(Pack, names_what_is_missing_or_does_not_fit) {
     save_safetensors(folder / "y.safetensors", broken);
     return test::error_of([&] { load_characters(folder / "y.safetensors"); });
   };
-  for (const auto& [name, array] : good.arrays) EXPECT_THAT(error_without(name), testing::HasSubstr(name));
+  for (const auto& [name, array] : good.arrays)
+    if (!name.ends_with("/orientations")) EXPECT_THAT(error_without(name), testing::HasSubstr(name));  // files of before hold none
   Safetensors broken = good;
   broken.arrays["bent/attention"] = Array::of<std::uint8_t>(std::vector<std::uint8_t>{1}, {1});
   save_safetensors(folder / "y.safetensors", broken);

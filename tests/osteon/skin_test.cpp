@@ -133,7 +133,7 @@ TEST_F(SkinCommand, the_same_bytes_with_one_and_two_threads) {
 }
 
 TEST_F(SkinCommand, every_method_weighs_every_vertex) {
-  for (const char* method : {"rigid", "heat", "biharmonic", "transfer --from hero.glb"}) {
+  for (const char* method : {"rigid", "heat", "biharmonic", "neuroskinning", "transfer --from hero.glb"}) {
     const auto run = osteon(folder_, fmt::format("skin body.obj --skeleton hero.glb -o out.glb --method {}", method));
     ASSERT_EQ(run.code, 0) << run.err;
     const io::Asset out = io::load(folder_ / "out.glb");

@@ -223,7 +223,8 @@ void add_command(CLI::App& app, Task task, const char* name, const char* descrip
   if (task == Task::joints) add_combined_options(*command, *arguments);
   if (task == Task::votes) add_votes_options(*command, *arguments);
   if (reads_super_skeleton(task)) add_neuroskinning_options(*command, *arguments);
-  if (task == Task::neuroskinning_2019) arguments->options.augment.mirror = arguments->options.augment.half_turn = 0.0f;  // slots have sides
+  if (task == Task::neuroskinning_2019)
+    arguments->options.augment.mirror = arguments->options.augment.half_turn = 0.0f;  // slots have sides
   command->callback([command, task, arguments] { run(*command, task, *arguments); });
 }
 

@@ -146,7 +146,8 @@ void add_method_options(CLI::App& command, SkinArguments& arguments) {
   for (const auto& [name, method] : kMethods) names.push_back(name);
   command
       .add_option("--method", arguments.method,
-                  "How to bind: geodesic voxels, bone heat, biharmonic, nearest bone, another mesh's weights, or networks (RigNet's, NeuroSkinning's)")
+                  "How to bind: geodesic voxels, bone heat, biharmonic, nearest bone, another mesh's weights, or networks (RigNet's, "
+                  "NeuroSkinning's)")
       ->check(CLI::IsMember(names))
       ->capture_default_str();
   command.add_option("--from", arguments.from, "For --method transfer: the rigged mesh whose weights to take")->type_name("FILE");

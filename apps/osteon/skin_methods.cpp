@@ -43,8 +43,7 @@ std::vector<double> values(const metrics::SkinScores& s) { return {s.precision, 
 }  // namespace
 
 metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const std::string& split, const infer::RignetModels& models,
-                                       const infer::NeuroskinningModel& neuroskinning,
-                                       const std::vector<metrics::ScoreColumn>& columns) {
+                                       const infer::NeuroskinningModel& neuroskinning, const std::vector<metrics::ScoreColumn>& columns) {
   struct Outcome {
     std::vector<metrics::ScoreRow> rows;
     std::vector<std::string> failures;

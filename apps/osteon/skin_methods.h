@@ -14,7 +14,6 @@ namespace osteon::app {
 // Every method's skin for the reference's skeleton, on the characters of a split. The "category" of a row is the method.
 // Columns: precision, recall, L1, mean and max distance.
 metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const std::string& split, const infer::RignetModels& models,
-                                       const infer::NeuroskinningModel& neuroskinning,
-                                       const std::vector<metrics::ScoreColumn>& columns);
+                                       const infer::NeuroskinningModel& neuroskinning, const std::vector<metrics::ScoreColumn>& columns);
 
 }  // namespace osteon::app

@@ -75,8 +75,7 @@ TEST(RandomArticulation, without_proportions_keeps_the_lengths_of_bones) {
   const Skeleton rest = figure();
   const Articulation a = random_articulation(rest, std::nullopt, {.largest_bend = 1.0f, .proportion = 0.0f}, random);
   for (const Bone& bone : bones(rest))
-    if (bone.end)
-      EXPECT_NEAR((a.joints[*bone.end] - a.joints[bone.start]).norm(), (bone.segment.b - bone.segment.a).norm(), 1e-5f);
+    if (bone.end) EXPECT_NEAR((a.joints[*bone.end] - a.joints[bone.start]).norm(), (bone.segment.b - bone.segment.a).norm(), 1e-5f);
 }
 
 // Doing nothing gives what prepare() gave, but for the scale: that was of the original's box, and the reduced mesh fills it less.

@@ -41,8 +41,9 @@ TEST(NeuroBatch, each_vertex_s_targets_sum_to_one_or_are_zero) {
   ASSERT_EQ(batch.targets.skin.size(), choices.vertex_of.size());
   ASSERT_EQ(batch.targets.log_shares.size(), choices.vertex_of.size());
   for (std::size_t v = 0; v + 1 < choices.offsets.size(); ++v) {
-    const auto row = std::span(batch.targets.skin).subspan(static_cast<std::size_t>(choices.offsets[v]),
-                                                           static_cast<std::size_t>(choices.offsets[v + 1] - choices.offsets[v]));
+    const auto row =
+        std::span(batch.targets.skin)
+            .subspan(static_cast<std::size_t>(choices.offsets[v]), static_cast<std::size_t>(choices.offsets[v + 1] - choices.offsets[v]));
     EXPECT_NEAR(std::accumulate(row.begin(), row.end(), 0.0f), batch.targets.skin_share[v] > 0.0f ? 1.0f : 0.0f, 1e-4f);
   }
   const std::size_t joints = choices.bone_offsets.size() - 1;

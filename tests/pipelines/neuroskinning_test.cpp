@@ -66,7 +66,8 @@ TEST_P(Neuroskinning, binds_skeletons_of_more_joints_than_slots) {
   Skeleton many = rig.skeleton;
   while (many.size() < 163) {
     const auto parent = static_cast<JointId>(many.size() % rig.skeleton.size());
-    many.add("face" + std::to_string(many.size()), parent, many.rest_positions[parent] + Vec3f(0.0f, 0.01f, 0.003f * static_cast<float>(many.size() % 7)));
+    many.add("face" + std::to_string(many.size()), parent,
+             many.rest_positions[parent] + Vec3f(0.0f, 0.01f, 0.003f * static_cast<float>(many.size() % 7)));
   }
   expect_exact(neuroskinning_weights(rig.mesh, many, model).weights, rig.mesh, many);
 }
@@ -97,8 +98,9 @@ TEST(NeuroskinningOurs, a_network_that_knows_nothing_keeps_touching_parts_apart)
   const auto model = untrained(Network::neuroskinning);
   const test::Bound two = test::touching_capsules(2);
   const SkinWeights weights = neuroskinning_weights(two.mesh, two.skeleton, model).weights;
-  EXPECT_LT(test::largest_foreign_weight(weights, {JointId{1}, JointId{2}}, [&](VertexId v) { return index(v) < two.mesh.positions.size() / 2; }),
-            0.01f);
+  EXPECT_LT(
+      test::largest_foreign_weight(weights, {JointId{1}, JointId{2}}, [&](VertexId v) { return index(v) < two.mesh.positions.size() / 2; }),
+      0.01f);
 }
 
 TEST(NeuroskinningOurs, of_joints_at_one_place_the_one_whose_bone_it_is_gets_the_weights) {
@@ -152,7 +154,8 @@ TEST_F(NeuroskinningShipped, binds_clothes_to_their_own_joints_and_keeps_the_bod
   double of_garments = 0.0, of_bodies = 0.0, leak = 0.0;
   constexpr std::uint64_t first = 301, last = 308;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
-    const synth::DressedCharacter character = synth::dressed(synth::make_character(synth::Kind::Biped, seed, {80, synth::Finish::Smooth}), seed);
+    const synth::DressedCharacter character =
+        synth::dressed(synth::make_character(synth::Kind::Biped, seed, {80, synth::Finish::Smooth}), seed);
     const Rig& rig = character.rig;
     const SkinWeights weights = neuroskinning_weights(rig.mesh, rig.skeleton, model()).weights;
     expect_exact(weights, rig.mesh, rig.skeleton);
@@ -161,7 +164,8 @@ TEST_F(NeuroskinningShipped, binds_clothes_to_their_own_joints_and_keeps_the_bod
     of_bodies += share * difference(weights, rig.weights, 0, character.body_vertices);
     for (std::size_t v = 0; v < character.body_vertices; ++v)
       for (const Influence& i : weights[static_cast<VertexId>(v)])
-        if (index(i.joint) >= character.body_joints) leak += share * static_cast<double>(i.weight) / static_cast<double>(character.body_vertices);
+        if (index(i.joint) >= character.body_joints)
+          leak += share * static_cast<double>(i.weight) / static_cast<double>(character.body_vertices);
   }
   RecordProperty("garments_l1", std::to_string(of_garments));
   RecordProperty("bodies_l1", std::to_string(of_bodies));

@@ -74,10 +74,12 @@ TEST(NeuroFeatures, the_paper_s_rows_hold_straight_distances_and_a_constant_for_
   Skeleton s;
   const JointId hips = s.add("hips", std::nullopt, {0, 0.1f, 0});
   s.add("head", hips, {0, 1, 0});
-  const SuperSkeleton super({{{"head", Side::none}, Vec3f::Zero(), 1}, {{"hips", Side::none}, Vec3f::Zero(), 2}, {{"tail", Side::none}, Vec3f::Zero(), 3}});
+  const SuperSkeleton super(
+      {{{"head", Side::none}, Vec3f::Zero(), 1}, {{"hips", Side::none}, Vec3f::Zero(), 2}, {{"tail", Side::none}, Vec3f::Zero(), 3}});
   const std::vector<float> rows = slot_rows(positions, normals, s, super, super.assign(s), 4);
   ASSERT_EQ(rows.size(), 2u * 10u);
-  const std::vector<float> expected{0.3f, 0.1f, 0, 1, 0, 0, std::hypot(0.3f, 0.8f), 0.3f, kNoSlot, kNoSlot, 0, 1.4f, 0, 0, 1, 0, 0.5f, 0.5f, kNoSlot, kNoSlot};
+  const std::vector<float> expected{0.3f, 0.1f, 0,    1,    0,       0,      std::hypot(0.3f, 0.8f), 0.3f, kNoSlot, kNoSlot, 0, 1.4f, 0, 0,
+                                    1,    0,    0.5f, 0.5f, kNoSlot, kNoSlot};
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_NEAR(rows[i], expected[i], 1e-6f) << i;
 }
 

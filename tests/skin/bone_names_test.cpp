@@ -5,12 +5,15 @@
 
 namespace osteon::skin {
 
-void PrintTo(const BoneName& name, std::ostream* out) { *out << name.kind << (name.side == Side::left ? ", left" : name.side == Side::right ? ", right" : ""); }
+void PrintTo(const BoneName& name, std::ostream* out) {
+  *out << name.kind << (name.side == Side::left ? ", left" : name.side == Side::right ? ", right" : "");
+}
 
 namespace {
 
 TEST(BoneNames, one_part_of_the_body_has_one_kind_in_every_convention) {
-  for (const char* thigh : {"mixamorig:LeftUpLeg", "Bip01 L Thigh", "thigh_l", "UpperLeg.L", "Armature_UpperLeg_L", "char:def_l_thigh", "LeftUpLeg"})
+  for (const char* thigh :
+       {"mixamorig:LeftUpLeg", "Bip01 L Thigh", "thigh_l", "UpperLeg.L", "Armature_UpperLeg_L", "char:def_l_thigh", "LeftUpLeg"})
     EXPECT_EQ(bone_name(thigh), (BoneName{"thigh", Side::left})) << thigh;
   for (const char* forearm : {"RightForeArm", "Bip01 R Forearm", "lowerarm_r", "LowerArm.R", "char:def_r_elbow"})
     EXPECT_EQ(bone_name(forearm), (BoneName{"forearm", Side::right})) << forearm;
@@ -28,8 +31,7 @@ TEST(BoneNames, joints_that_are_no_part_of_the_body_say_so) {
 }
 
 TEST(BoneNames, names_that_say_nothing_have_no_kind) {
-  for (const char* name : {"Bone", "Bone.012", "joint1", "Armature_Bone_007", "", "...", "42"})
-    EXPECT_EQ(bone_name(name).kind, "") << name;
+  for (const char* name : {"Bone", "Bone.012", "joint1", "Armature_Bone_007", "", "...", "42"}) EXPECT_EQ(bone_name(name).kind, "") << name;
 }
 
 }  // namespace

@@ -61,8 +61,10 @@ TEST(SuperSkeleton, a_mirrored_skeleton_falls_on_the_slots_of_the_other_side) {
   for (JointId j : mirrored.names.ids()) {
     mirrored.rest_positions[j].x() = -mirrored.rest_positions[j].x();
     std::string& name = mirrored.names[j];
-    if (name.starts_with("Left")) name.replace(0, 4, "Right");
-    else if (name.starts_with("Right")) name.replace(0, 5, "Left");
+    if (name.starts_with("Left"))
+      name.replace(0, 4, "Right");
+    else if (name.starts_with("Right"))
+      name.replace(0, 5, "Left");
   }
   const SlotAssignment here = super.assign(person(false)), there = super.assign(mirrored);
   for (JointId j : mirrored.names.ids()) {
@@ -77,7 +79,8 @@ TEST(SuperSkeleton, no_two_joints_share_a_slot_while_there_are_enough) {
   for (int i = 0; i < 200; ++i) slots.push_back({{}, {0.0f, 0.005f * static_cast<float>(i), 0.0f}, 0});
   Skeleton chain;
   for (int i = 0; i < 163; ++i)
-    chain.add("tentacle" + std::to_string(i), i == 0 ? std::nullopt : std::optional(static_cast<JointId>(i - 1)), {0.0f, 1.0f - 0.004f * static_cast<float>(i), 0.0f});
+    chain.add("tentacle" + std::to_string(i), i == 0 ? std::nullopt : std::optional(static_cast<JointId>(i - 1)),
+              {0.0f, 1.0f - 0.004f * static_cast<float>(i), 0.0f});
   const SlotAssignment many = SuperSkeleton(slots).assign(chain);
   EXPECT_EQ(std::set<std::size_t>(many.slot.begin(), many.slot.end()).size(), 163u);
   slots.resize(100);

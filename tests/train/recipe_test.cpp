@@ -84,11 +84,13 @@ TEST_P(AnyRecipe, begins_with_the_loss_that_it_always_began_with) {
 
 constexpr Recipe votes{Task::votes, 2e-4, 0.325792}, bind{Task::bind, 3e-3, 1.573262}, bones{Task::bones, 1e-3, 1.638445},
     root{Task::root, 1e-3, 2.040163}, joints{Task::joints, 1e-3, 0.106922}, attention{Task::attention, 1e-3, 0.723381},
-    skin{Task::skin, 1e-3, 1.720464}, neuroskinning{Task::neuroskinning, 3e-3, 0.921843}, neuroskinning_2019{Task::neuroskinning_2019, 1e-3, 2.188107};
+    skin{Task::skin, 1e-3, 1.720464}, neuroskinning{Task::neuroskinning, 3e-3, 0.921843},
+    neuroskinning_2019{Task::neuroskinning_2019, 1e-3, 2.188107};
 // Not votes: which characters are drawn changes their loss more than thirty steps do. Learning.thirty_steps_lower_the_loss shows them the
 // same characters in every step.
 INSTANTIATE_TEST_SUITE_P(Training, RecipeOfOurs, ::testing::Values(bind, bones, root, neuroskinning));
-INSTANTIATE_TEST_SUITE_P(Training, AnyRecipe, ::testing::Values(votes, bind, bones, root, joints, attention, skin, neuroskinning, neuroskinning_2019));
+INSTANTIATE_TEST_SUITE_P(Training, AnyRecipe,
+                         ::testing::Values(votes, bind, bones, root, joints, attention, skin, neuroskinning, neuroskinning_2019));
 
 }  // namespace
 }  // namespace osteon::train

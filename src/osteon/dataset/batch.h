@@ -55,8 +55,8 @@ struct Batch {
 };
 
 struct BatchOptions {
-  Parts parts = Parts::joints;  // joints: attention too; pairs: joints too
-  std::size_t neighbours = 10;  // geodesic ones of a vertex
+  Parts parts = Parts::joints;                                     // joints: attention too; pairs: joints too
+  std::size_t neighbours = 10;                                     // geodesic ones of a vertex
   std::shared_ptr<const skin::SuperSkeleton> super_skeleton = {};  // neuro and neuro_2019
 };
 

@@ -194,7 +194,8 @@ void read_orientations(const Reader& reader, Skeleton& skeleton) {
   reader.expect(numbers.size() == 4 * skeleton.size(), "orientations do not fit the joints");
   for (JointId j : skeleton.names.ids()) {
     Quatf& q = skeleton.rest_orientations[j];
-    for (std::size_t k = 0; k < 4; ++k) q.coeffs()[static_cast<Eigen::Index>(k)] = static_cast<float>(numbers[4 * index(j) + k]) / kHalfTurn - 1.0f;
+    for (std::size_t k = 0; k < 4; ++k)
+      q.coeffs()[static_cast<Eigen::Index>(k)] = static_cast<float>(numbers[4 * index(j) + k]) / kHalfTurn - 1.0f;
     q.normalize();
   }
 }

@@ -67,13 +67,14 @@ class DryRun {
 namespace rignet {
 
 enum class Network { joints, attention, votes, bones, root, skin, bind, neuroskinning, neuroskinning_2019 };
-constexpr std::array kNetworks{Network::joints, Network::attention, Network::votes,         Network::bones,             Network::root,
-                               Network::skin,   Network::bind,      Network::neuroskinning, Network::neuroskinning_2019};
+constexpr std::array kNetworks{Network::joints, Network::attention,     Network::votes,
+                               Network::bones,  Network::root,          Network::skin,
+                               Network::bind,   Network::neuroskinning, Network::neuroskinning_2019};
 
 // What the networks are called in files and commands.
 constexpr const char* name_of(Network network) {
-  constexpr std::array<const char*, kNetworks.size()> names{"joints", "attention", "votes",         "bones",             "root",
-                                                         "skin",   "bind",      "neuroskinning", "neuroskinning_2019"};
+  constexpr std::array<const char*, kNetworks.size()> names{"joints",        "attention",         "votes", "bones", "root", "skin", "bind",
+                                                            "neuroskinning", "neuroskinning_2019"};
   return names[static_cast<std::size_t>(network)];
 }
 
@@ -105,10 +106,8 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
       break;
     case Network::neuroskinning:
     case Network::neuroskinning_2019: {
-      const Neuro<DryRun> neuro{{neuro_vertex_features + neuro_slots},
-                                {{neuro_choice_features}, {}, {}, {}, {}, {}},
-                                {neuro_joint_features + neuro_kinds},
-                                {}};
+      const Neuro<DryRun> neuro{
+          {neuro_vertex_features + neuro_slots}, {{neuro_choice_features}, {}, {}, {}, {}, {}}, {neuro_joint_features + neuro_kinds}, {}};
       if (network == Network::neuroskinning)
         neuroskinning::joint_choice_net(b, mesh, neuro);
       else

@@ -138,11 +138,11 @@ struct VoteArrays {
 };
 
 // What the NeuroSkinning networks read beside the mesh (skin/neuro_features.h).
-constexpr int neuro_slots = 256;            // of the super skeleton
-constexpr int neuro_kinds = 160;            // of its joints, left and right alike
-constexpr int neuro_vertex_features = 6;    // position, normal; then a distance for each slot
-constexpr int neuro_choice_features = 26;   // of a vertex and a joint near it
-constexpr int neuro_joint_features = 16;    // of a joint in its skeleton; then one for each kind
+constexpr int neuro_slots = 256;                                 // of the super skeleton
+constexpr int neuro_kinds = 160;                                 // of its joints, left and right alike
+constexpr int neuro_vertex_features = 6;                         // position, normal; then a distance for each slot
+constexpr int neuro_choice_features = 26;                        // of a vertex and a joint near it
+constexpr int neuro_joint_features = 16;                         // of a joint in its skeleton; then one for each kind
 constexpr std::array<std::size_t, 3> neuro_pooling{16, 24, 64};  // vertices, the vertex itself among them (the paper's J)
 struct NeuroArrays {
   std::vector<float> features;        // (V, neuro_vertex_features + neuro_slots); the paper's network alone

@@ -7,7 +7,8 @@
 #include "osteon/nets/ops.h"
 
 // The building blocks of the graph networks. Each is plain Ops; a backend that has a member of the same name and arguments (after the
-// backend itself) is asked instead: linear_of, mlp, edge_conv, relu_norm. Such a member must compute the same function of the same parameters.
+// backend itself) is asked instead: linear_of, mlp, edge_conv, relu_norm. Such a member must compute the same function of the same
+// parameters.
 namespace osteon::nets {
 
 // Directed edges, sorted by receiver; every vertex receives from itself too.

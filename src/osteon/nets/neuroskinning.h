@@ -4,15 +4,15 @@
 #include "osteon/nets/graph.h"
 #include "osteon/nets/layers.h"
 
-// Liu, Zheng, Tang, Yuan, Fan, Zhou. NeuroSkinning: Automatic Skin Binding for Production Characters with Deep Graph Networks. ACM TOG 38(4),
-// 2019. Written from the paper; what it leaves open is chosen thus: a vertex hears itself too (after sampling many have no neighbour);
-// activations are ReLU with a batch normalisation behind them, as in our other networks; linear layers have a bias; no dropout.
+// Liu, Zheng, Tang, Yuan, Fan, Zhou. NeuroSkinning: Automatic Skin Binding for Production Characters with Deep Graph Networks. ACM TOG
+// 38(4), 2019. Written from the paper; what it leaves open is chosen thus: a vertex hears itself too (after sampling many have no
+// neighbour); activations are ReLU with a batch normalisation behind them, as in our other networks; linear layers have a bias; no dropout.
 namespace osteon::nets::neuroskinning {
 
 // Graph attention unit (sec. 4.2) over one-ring and pooled neighbours: multi-head attention by plain dot products of the projected
-// features, softmax over the neighbourhood alone (the paper's equation 2 multiplies by the adjacency instead, which would let non-neighbours
-// in with exp 0); heads side by side; beside them their mean over the nearest vertices; beside these the input. As columns that are not put
-// together: a layer that reads them need not copy them.
+// features, softmax over the neighbourhood alone (the paper's equation 2 multiplies by the adjacency instead, which would let
+// non-neighbours in with exp 0); heads side by side; beside them their mean over the nearest vertices; beside these the input. As columns
+// that are not put together: a layer that reads them need not copy them.
 template <Ops B>
 Input<B> graph_unit(B& b, const Path& path, const Input<B>& x, const MeshGraph<B>& mesh, const Edges<B>& nearest, int hidden, int heads) {
   const auto projected = linear(b, path / "project", x, heads * hidden);
@@ -60,8 +60,7 @@ typename B::Tensor joint_choice_net(B& b, const MeshGraph<B>& mesh, const Neuro<
   Input<B> x3 = graph_unit<B>(b, Path("unit3"), x2, mesh, neuro.nearest[2], 64, 2);
   x3.emplace_back(global, mesh.batch.mesh_of);
   const auto of_vertex = mlp<B>(b, Path("vertex"), x3, {128});
-  const auto head =
-      mlp<B>(b, Path("head"), {pair, choices.features, {whole, choices.bone_of}, {of_vertex, choices.vertex_of}}, {128, 128});
+  const auto head = mlp<B>(b, Path("head"), {pair, choices.features, {whole, choices.bone_of}, {of_vertex, choices.vertex_of}}, {128, 128});
   return b.linear(Path("out"), head, 1);
 }
 

@@ -14,8 +14,8 @@
 namespace osteon::pipelines {
 namespace {
 
-constexpr float kSamePlace = 1e-3f;   // joints nearer than this are one, as in training; longest side 1
-constexpr float kPoolReach = 0.25f;   // of the vertices that a graph unit pools
+constexpr float kSamePlace = 1e-3f;  // joints nearer than this are one, as in training; longest side 1
+constexpr float kPoolReach = 0.25f;  // of the vertices that a graph unit pools
 constexpr float kAbsent = -1e4f;
 
 // By names, left is at -x.
@@ -57,7 +57,7 @@ Body study(const TriangleMesh& mesh, const Skeleton& skeleton, const Neuroskinni
 // Which joints of the original stand for each joint of the merged skeleton.
 class Owners {
  public:
-  explicit Owners(const Skeleton& original, const MergedSkeleton& merged) : original_(original), merged_(merged), first_(merged.skeleton.size()) {
+  Owners(const Skeleton& original, const MergedSkeleton& merged) : original_(original), merged_(merged), first_(merged.skeleton.size()) {
     for (std::size_t j = original.size(); j-- > 0;) first_[merged.from_original[static_cast<JointId>(j)]] = static_cast<JointId>(j);
   }
 

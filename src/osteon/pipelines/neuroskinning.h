@@ -26,8 +26,8 @@ struct NeuroskinningResult {
 };
 
 // Liu and others, NeuroSkinning, 2019: skin weights for a skeleton that is given. mesh -> its own frame, the left side by the joints' names
-// at +x -> working mesh -> joints onto the slots of the super skeleton -> network -> weights on the mesh that was given. Joints at one place
-// count as one, whose weights go to the one whose bone is nearest. The same for any order of vertices and any number of threads.
+// at +x -> working mesh -> joints onto the slots of the super skeleton -> network -> weights on the mesh that was given. Joints at one
+// place count as one, whose weights go to the one whose bone is nearest. The same for any order of vertices and any number of threads.
 // Throws Error for a mesh without surface. Pre: validate(mesh) and validate(skeleton) hold, in one space.
 NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skeleton& skeleton, const infer::NeuroskinningModel& model,
                                           const NeuroskinningOptions& options = {});

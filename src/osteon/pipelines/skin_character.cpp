@@ -35,7 +35,8 @@ skin::Binding by_networks(const TriangleMesh& mesh, const Skeleton& skeleton, co
 }  // namespace
 
 skin::Binding skin_character(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
-  skin::Binding out = options.rignet || options.neuroskinning ? by_networks(mesh, skeleton, options) : skin::bind(mesh, skeleton, options.bind);
+  skin::Binding out =
+      options.rignet || options.neuroskinning ? by_networks(mesh, skeleton, options) : skin::bind(mesh, skeleton, options.bind);
   if (!options.mirror) return out;
   const auto mirror = mirror_map(mesh, skeleton);
   if (!mirror) throw Error("mirror: the mesh or the skeleton is not its own mirror image; expected a partner for every vertex and joint");

@@ -12,10 +12,10 @@
 namespace osteon::pipelines {
 
 struct SkinCharacterOptions {
-  skin::BindOptions bind;                  // of the geometric methods; influences, pruning and locked joints of all
-  const infer::RignetModels* rignet = {};  // the networks bind, and `bind.method` is not read; may be null
+  skin::BindOptions bind;                               // of the geometric methods; influences, pruning and locked joints of all
+  const infer::RignetModels* rignet = {};               // the networks bind, and `bind.method` is not read; may be null
   const infer::NeuroskinningModel* neuroskinning = {};  // the same
-  bool mirror = false;                     // make the two halves of a symmetric character equal, bit by bit
+  bool mirror = false;                                  // make the two halves of a symmetric character equal, bit by bit
 };
 
 // Skin weights for a given skeleton, which is not touched: by geometry, by RigNet's networks or by NeuroSkinning's.

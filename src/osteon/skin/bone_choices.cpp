@@ -41,7 +41,8 @@ BoneChoices bone_choices(const TriangleMesh& mesh, const Skeleton& skeleton, con
   shares = smoothed(std::move(shares), geometry::one_ring(mesh), 1);
 
   const auto rows = static_cast<Eigen::Index>(mesh.positions.size()), columns = static_cast<Eigen::Index>(options.most);
-  BoneChoices out{list_of(bones), geometry::IndexMatrix::Constant(rows, columns, -1), Matrix::Zero(rows, columns), Matrix::Zero(rows, columns)};
+  BoneChoices out{list_of(bones), geometry::IndexMatrix::Constant(rows, columns, -1), Matrix::Zero(rows, columns),
+                  Matrix::Zero(rows, columns)};
   std::vector<JointId> seen;
   for (VertexId v : mesh.positions.ids()) {
     seen.clear();

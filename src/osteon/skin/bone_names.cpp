@@ -26,7 +26,9 @@ std::vector<std::string> words_of(std::string_view name) {
     const char c = name[i];
     const bool is_letter = std::isalpha(static_cast<unsigned char>(c)) != 0;
     const char before = i > 0 ? name[i - 1] : ' ', after = i + 1 < name.size() ? name[i + 1] : ' ';
-    const bool starts = !is_letter ? is_digit(c) != is_digit(before) : is_upper(c) ? !is_upper(before) || is_lower(after) : is_digit(before);
+    const bool starts = !is_letter    ? is_digit(c) != is_digit(before)
+                        : is_upper(c) ? !is_upper(before) || is_lower(after)
+                                      : is_digit(before);
     if (starts || (!is_letter && !is_digit(c))) words.emplace_back();
     if (is_letter || is_digit(c)) words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
@@ -42,32 +44,33 @@ std::optional<Side> side_of(const std::string& word) {
 
 // Words that tell the tool, not the part.
 bool says_nothing(const std::string& word) {
-  static const std::set<std::string> empty{"bip", "mixamorig", "armature", "char", "def", "c", "bone", "joint", "jnt", "bn", "cc", "base", "rig", "sk", "skel", "m"};
+  static const std::set<std::string> empty{"bip", "mixamorig", "armature", "char", "def", "c",  "bone", "joint",
+                                           "jnt", "bn",        "cc",       "base", "rig", "sk", "skel", "m"};
   return empty.contains(word);
 }
 
 // Parts of the body by the words for them, once words are joined: the longest that begins the name counts.
 const std::map<std::string, std::string>& parts() {
   static const std::map<std::string, std::string> all{
-      {"hips", "hips"},          {"pelvis", "hips"},      {"hip", "hips"},         {"abdomen", "abdomen"},   {"belly", "abdomen"},
-      {"stomach", "abdomen"},    {"spine", "spine"},      {"back", "spine"},       {"torso", "torso"},       {"chest", "chest"},
-      {"thorax", "chest"},       {"ribcage", "chest"},    {"body", "body"},        {"neck", "neck"},         {"head", "head"},
-      {"jaw", "jaw"},            {"mjaw", "jaw"},         {"chin", "jaw"},         {"mouth", "mouth"},       {"eye", "eye"},
-      {"ear", "ear"},            {"clavicle", "clavicle"},{"clav", "clavicle"},    {"collar", "clavicle"},   {"shoulder", "clavicle"},
-      {"upperarm", "upperarm"},  {"uparm", "upperarm"},   {"arm", "upperarm"},     {"forearm", "forearm"},   {"lowerarm", "forearm"},
-      {"lowarm", "forearm"},     {"elbow", "forearm"},    {"hand", "hand"},        {"wrist", "hand"},        {"palm", "hand"},
-      {"fist", "hand"},          {"thigh", "thigh"},      {"upleg", "thigh"},      {"upperleg", "thigh"},    {"calf", "calf"},
-      {"shin", "calf"},          {"lowerleg", "calf"},    {"lowleg", "calf"},      {"knee", "calf"},         {"foot", "foot"},
-      {"ankle", "foot"},         {"toe", "toe"},          {"toes", "toe"},         {"ball", "toe"},          {"toebase", "toe"},
-      {"thumb", "thumb"},        {"handthumb", "thumb"},  {"fngthumb", "thumb"},   {"index", "index"},       {"handindex", "index"},
-      {"fngindex", "index"},     {"middle", "middle"},    {"handmiddle", "middle"},{"fngmid", "middle"},     {"ring", "ring"},
-      {"handring", "ring"},      {"fngring", "ring"},     {"pinky", "pinky"},      {"handpinky", "pinky"},   {"fngpinky", "pinky"},
-      {"little", "pinky"},       {"tail", "tail"},        {"wing", "wing"},        {"root", "root"},         {"leg", "leg"}};
+      {"hips", "hips"},         {"pelvis", "hips"},       {"hip", "hips"},          {"abdomen", "abdomen"}, {"belly", "abdomen"},
+      {"stomach", "abdomen"},   {"spine", "spine"},       {"back", "spine"},        {"torso", "torso"},     {"chest", "chest"},
+      {"thorax", "chest"},      {"ribcage", "chest"},     {"body", "body"},         {"neck", "neck"},       {"head", "head"},
+      {"jaw", "jaw"},           {"mjaw", "jaw"},          {"chin", "jaw"},          {"mouth", "mouth"},     {"eye", "eye"},
+      {"ear", "ear"},           {"clavicle", "clavicle"}, {"clav", "clavicle"},     {"collar", "clavicle"}, {"shoulder", "clavicle"},
+      {"upperarm", "upperarm"}, {"uparm", "upperarm"},    {"arm", "upperarm"},      {"forearm", "forearm"}, {"lowerarm", "forearm"},
+      {"lowarm", "forearm"},    {"elbow", "forearm"},     {"hand", "hand"},         {"wrist", "hand"},      {"palm", "hand"},
+      {"fist", "hand"},         {"thigh", "thigh"},       {"upleg", "thigh"},       {"upperleg", "thigh"},  {"calf", "calf"},
+      {"shin", "calf"},         {"lowerleg", "calf"},     {"lowleg", "calf"},       {"knee", "calf"},       {"foot", "foot"},
+      {"ankle", "foot"},        {"toe", "toe"},           {"toes", "toe"},          {"ball", "toe"},        {"toebase", "toe"},
+      {"thumb", "thumb"},       {"handthumb", "thumb"},   {"fngthumb", "thumb"},    {"index", "index"},     {"handindex", "index"},
+      {"fngindex", "index"},    {"middle", "middle"},     {"handmiddle", "middle"}, {"fngmid", "middle"},   {"ring", "ring"},
+      {"handring", "ring"},     {"fngring", "ring"},      {"pinky", "pinky"},       {"handpinky", "pinky"}, {"fngpinky", "pinky"},
+      {"little", "pinky"},      {"tail", "tail"},         {"wing", "wing"},         {"root", "root"},       {"leg", "leg"}};
   return all;
 }
 
 struct Words {
-  std::string text;      // those that tell the part, joined
+  std::string text;  // those that tell the part, joined
   int number = -1;
   bool is_twist = false, is_end = false, is_control = false;
 };

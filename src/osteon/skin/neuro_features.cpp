@@ -103,7 +103,8 @@ ChoiceRows choice_rows(std::span<const Vec3f> positions, std::span<const Vec3f> 
 
   std::vector<float> territory(skeleton.size(), 0.0f);
   for (std::size_t v = 0; v < positions.size(); ++v)
-    territory[static_cast<std::size_t>(out.joints[static_cast<std::size_t>(out.offsets[v])])] += 1.0f / static_cast<float>(positions.size());
+    territory[static_cast<std::size_t>(out.joints[static_cast<std::size_t>(out.offsets[v])])] +=
+        1.0f / static_cast<float>(positions.size());
   out.chosen = out.joints;
   std::ranges::sort(out.chosen);
   const auto copies = std::ranges::unique(out.chosen);

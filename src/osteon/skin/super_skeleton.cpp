@@ -13,7 +13,7 @@ namespace osteon::skin {
 namespace {
 
 constexpr float kSideCost = 0.6f, kUnspecificCost = 0.8f, kOtherKindCost = 1.6f;  // beside 0 for the joint's own kind and side
-constexpr float kPlaceCost = 2.0f;                                              // of the distance, longest side 1
+constexpr float kPlaceCost = 2.0f;                                                // of the distance, longest side 1
 constexpr int kMeanRounds = 10;
 
 // The side on which a joint without a name stands.
@@ -32,7 +32,7 @@ struct Places {
   Vec3f mean() const { return weight > 0.0 ? Vec3f(sum / static_cast<float>(weight)) : sum; }
 };
 
-// How much a skeleton counts: ten alike ones and more count as three.
+// How much each skeleton of a group counts: 1 / sqrt(number of them).
 std::map<std::string, double> weights_of_groups(std::span<const NamedSkeleton> skeletons) {
   std::map<std::string, double> sizes;
   for (const NamedSkeleton& s : skeletons) sizes[s.group] += 1.0;
@@ -112,7 +112,7 @@ SuperSkeleton learn_super_skeleton(std::span<const NamedSkeleton> skeletons, con
   // The kinds that most skeletons have, as far as there are slots for all of their sides.
   std::vector<std::string> ranked;
   for (const auto& [kind, count] : support)
-    if (count >= 0.1 * static_cast<double>(options.least_skeletons)) ranked.push_back(kind);
+    if (count >= options.least_support) ranked.push_back(kind);
   std::ranges::stable_sort(ranked, std::greater(), [&](const std::string& kind) { return support.at(kind); });
   std::vector<Slot> slots;
   int kind_number = 0;

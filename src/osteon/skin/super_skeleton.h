@@ -14,9 +14,9 @@ namespace osteon::skin {
 
 // One place for a joint in the super skeleton.
 struct Slot {
-  BoneName name;  // kind empty: of joints whose names say nothing
+  BoneName name;                   // kind empty: of joints whose names say nothing
   Vec3f position = Vec3f::Zero();  // mean of the joints that it was made of; left at +x
-  int kind = 0;   // the same for left and right
+  int kind = 0;                    // the same for left and right
 
   bool operator==(const Slot&) const = default;
 };
@@ -30,7 +30,7 @@ struct SlotAssignment {
 struct SuperSkeletonOptions {
   std::size_t slots = 256, kinds = 160;  // at most
   std::size_t unspecific = 64;           // of the slots, for joints whose names say nothing
-  std::size_t least_skeletons = 3;       // that a kind must be seen in, all of one group counting as one to ten
+  double least_support = 0.3;            // skeletons that a kind must be seen in; n of one group count as sqrt(n) together
 };
 
 // A skeleton whose joints are the basis of the super skeleton, in the frame of the networks: longest side 1, feet on y = 0, centred.

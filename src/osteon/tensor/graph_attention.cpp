@@ -37,9 +37,8 @@ void softmax(std::vector<float>& scores, std::size_t heads) {
 
 Tensor mean_of(const Tensor& x, std::span<const std::int32_t> offsets, std::span<const std::int32_t> sources) {
   Tensor out(offsets.size() - 1, x.columns());
-  for_each_segment(offsets, sources, [&](std::size_t v, std::span<const std::int32_t> own) {
-    mean_of_rows(x.data(), x.columns(), own, out.row(v).data());
-  });
+  for_each_segment(offsets, sources,
+                   [&](std::size_t v, std::span<const std::int32_t> own) { mean_of_rows(x.data(), x.columns(), own, out.row(v).data()); });
   return out;
 }
 

@@ -90,7 +90,8 @@ Tensor attend(const Tensor& x, std::span<const std::int32_t> offsets, std::span<
     for (std::size_t begin = 0; begin < x.columns(); begin += width) {
       std::vector<double> scores(last - first, 0.0);
       for (std::size_t e = first; e < last; ++e)
-        for (std::size_t c = begin; c < begin + width; ++c) scores[e - first] += static_cast<double>(x.row(v)[c]) * static_cast<double>(source(e)[c]);
+        for (std::size_t c = begin; c < begin + width; ++c)
+          scores[e - first] += static_cast<double>(x.row(v)[c]) * static_cast<double>(source(e)[c]);
       const double largest = *std::ranges::max_element(scores);
       double total = 0.0;
       for (double& score : scores) total += score = std::exp(score - largest);

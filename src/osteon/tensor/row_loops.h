@@ -31,7 +31,6 @@ enum class Activation { none, relu };
 // x[r] += addend[which[r]], then the activation; dense rows.
 void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Activation activation);
 
-
 // out = mean of the rows of x that `picked` names. Pre: at least one.
 void mean_of_rows(const float* x, std::size_t width, std::span<const std::int32_t> picked, float* out);
 

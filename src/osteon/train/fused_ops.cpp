@@ -224,7 +224,8 @@ struct EdgeLayer : torch::autograd::Function<EdgeLayer> {
 Tensor linear_blocks(const std::vector<Tensor>& inputs, const std::vector<Tensor>& weights, const Tensor& start, const Tensor& index) {
   std::vector<Tensor> list = inputs;
   list.insert(list.end(), weights.begin(), weights.end());
-  return LinearBlocks::apply(at::TensorList(list), start, index.defined() ? index : torch::empty({0}, at::kInt));  // an op needs all its inputs
+  return LinearBlocks::apply(at::TensorList(list), start,
+                             index.defined() ? index : torch::empty({0}, at::kInt));  // an op needs all its inputs
 }
 
 Tensor picked_rows(const Tensor& x, const Tensor& index) { return PickedRows::apply(x, index); }

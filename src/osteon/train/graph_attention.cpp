@@ -15,14 +15,15 @@ using torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
-constexpr std::int64_t grain = 64;   // vertices of a task
-constexpr std::int64_t block = 64;   // columns of a task, where rows are added to
+constexpr std::int64_t grain = 64;  // vertices of a task
+constexpr std::int64_t block = 64;  // columns of a task, where rows are added to
 
 struct Segments {
   const std::int32_t *offsets, *sources;
   std::int64_t count;
 
-  Segments(const Tensor& o, const Tensor& s) : offsets(o.data_ptr<std::int32_t>()), sources(s.data_ptr<std::int32_t>()), count(o.size(0) - 1) {}
+  Segments(const Tensor& o, const Tensor& s)
+      : offsets(o.data_ptr<std::int32_t>()), sources(s.data_ptr<std::int32_t>()), count(o.size(0) - 1) {}
 };
 
 struct SegmentMean : torch::autograd::Function<SegmentMean> {

@@ -29,10 +29,10 @@ struct TaskOptions {
   RunOptions run;
   dataset::BatchOptions batch;
   int mean_shift_steps = 15;
-  double collapse_weight = 2.0;   // of the trail against chamfer(q, joints): the released code's
-  double attention_weight = 0.1;  // of the attention's own cross-entropy in the combined loss: the code's option
-  double density_weight = 0.05;   // votes: of the density at the joints, against chamfer(q, joints)
-  double density_width = 0.03;    // of its kernel; longest side = 1
+  double collapse_weight = 2.0;    // of the trail against chamfer(q, joints): the released code's
+  double attention_weight = 0.1;   // of the attention's own cross-entropy in the combined loss: the code's option
+  double density_weight = 0.05;    // votes: of the density at the joints, against chamfer(q, joints)
+  double density_width = 0.03;     // of its kernel; longest side = 1
   double difference_weight = 1.0;  // neuroskinning: of the L1 distance of the weights, against their cross-entropy
 };
 

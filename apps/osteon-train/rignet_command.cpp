@@ -97,6 +97,14 @@ void add_votes_options(CLI::App& command, Arguments& a) {
   command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
 }
 
+void add_neuroskinning_options(CLI::App& command, Arguments& a) {
+  command.add_option("--difference-weight", a.options.task.difference_weight, "Of the weights' L1 distance, against their cross-entropy")
+      ->capture_default_str();
+  command.add_option("--nameless", a.options.augment.nameless, "How often the joints' names are not read")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+}
+
 void add_combined_options(CLI::App& command, Arguments& a) {
   auto* combined =
       command.add_flag("--combined", a.combined, "Train displacement, attention and bandwidth together, through the mean shift");
@@ -149,6 +157,16 @@ Corpus corpus_of(const Arguments& a, Task task) {
   return corpus;
 }
 
+bool reads_super_skeleton(Task task) { return task == Task::neuroskinning || task == Task::neuroskinning_2019; }
+
+// That of the weights to start from, or a new one of all training characters.
+skin::SuperSkeleton super_skeleton_of(const Corpus& corpus, const fs::path& init) {
+  if (!init.empty()) return skin::SuperSkeleton::from_json(load_safetensors(init).metadata.at("super_skeleton"));
+  std::vector<skin::NamedSkeleton> skeletons;
+  for (const dataset::Example& e : corpus.examples) skeletons.push_back({&e.character.skeleton, e.character.info.group});
+  return skin::learn_super_skeleton(skeletons, {.slots = nets::neuro_slots, .kinds = nets::neuro_kinds});
+}
+
 train::Model starting_model(Task task, const Arguments& a) {
   train::Model model = train::fresh_model(task, a.options.seed);
   for (const Network network : nets::rignet::kNetworks) {
@@ -181,6 +199,7 @@ std::map<std::string, std::string> metadata_of(const CLI::App& command, const Ar
 
 void save_weights(const CLI::App& command, const Arguments& a, Task task, train::Model& model, const train::TrainResult& result) {
   auto metadata = metadata_of(command, a, result);
+  if (const auto& super = a.options.task.batch.super_skeleton) metadata["super_skeleton"] = super->to_json();
   if (model.parts.contains("bandwidth")) metadata["bandwidth"] = fmt::format("{}", model["bandwidth"].at("h").item<float>());
   for (const Network network : nets::rignet::kNetworks) {
     const std::string name = name_of(network);
@@ -203,6 +222,8 @@ void run(const CLI::App& command, Task task, Arguments a) {
   const Corpus corpus = corpus_of(a, task);
   a.options.sampling = corpus.sampling;
   a.options.trained_before = !a.init.empty();
+  if (reads_super_skeleton(task))
+    a.options.task.batch.super_skeleton = std::make_shared<const skin::SuperSkeleton>(super_skeleton_of(corpus, a.init));
   const auto validation = a.validation.empty() ? std::vector<dataset::Example>{} : examples_of(a.validation, task);
   train::Trainer trainer(task, a.options, starting_model(task, a));
   if (a.resume) trainer.resume();
@@ -221,6 +242,9 @@ void add_command(CLI::App& app, Task task, const char* name, const char* descrip
   add_common_options(*command, *arguments);
   if (task == Task::joints) add_combined_options(*command, *arguments);
   if (task == Task::votes) add_votes_options(*command, *arguments);
+  if (reads_super_skeleton(task)) add_neuroskinning_options(*command, *arguments);
+  if (task == Task::neuroskinning_2019)
+    arguments->options.augment.mirror = arguments->options.augment.half_turn = 0.0f;  // slots have sides
   command->callback([command, task, arguments] { run(*command, task, *arguments); });
 }
 
@@ -236,6 +260,8 @@ void add_rignet_commands(CLI::App& app) {
   add_command(app, Task::root, "rignet.root", "Which joint is the root, by the paper's network");
   add_command(app, Task::bind, "rignet.bind", "How vertices follow the bones near them (the default)");
   add_command(app, Task::skin, "rignet.skin", "The same by the paper's network");
+  add_command(app, Task::neuroskinning, "neuroskinning", "The same by graph attention, names and geodesic voxel binding");
+  add_command(app, Task::neuroskinning_2019, "neuroskinning.2019", "The same by the network of NeuroSkinning's paper");
 }
 
 }  // namespace osteon::app

@@ -169,7 +169,8 @@ std::vector<double> score(Task task, const Subject& subject, const infer::Rignet
 
 Tables evaluate_split(const EvaluateArguments& arguments) {
   const auto models = arguments.models.load();
-  if (arguments.task == "skin-methods") return {skin_methods_table(arguments.data, arguments.split, models, kSkinColumns)};
+  if (arguments.task == "skin-methods")
+    return {skin_methods_table(arguments.data, arguments.split, models, infer::NeuroskinningModel::load(), kSkinColumns)};
   Tables tables{{"skeleton", kSkeletonColumns, {}, {}},
                 {"skin, skeleton given", kSkinColumns, {}, {}},
                 {"connectivity, joints given", kConnectivityColumns, {}, {}}};

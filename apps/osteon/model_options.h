@@ -8,6 +8,7 @@
 #include <string>
 
 #include "osteon/infer/model_folder.h"
+#include "osteon/infer/neuroskinning.h"
 #include "osteon/infer/rignet.h"
 #ifdef OSTEON_TORCH
 #include "osteon/torch_infer/torch_runner.h"
@@ -44,6 +45,10 @@ struct ModelOptions {
     if (!device.empty()) return infer::RignetModels::load(weights, torch_infer::torch_runners(device));
 #endif
     return infer::RignetModels::load(weights, precision);
+  }
+  // Those of NeuroSkinning: the same options, but another default.
+  infer::NeuroskinningModel load_neuroskinning() const {
+    return infer::NeuroskinningModel::load(folder ? *folder : infer::find_models(name == "rignet" ? "neuroskinning" : name), precision);
   }
 };
 

@@ -94,6 +94,11 @@ skin::Binding bound(const SkinArguments& arguments, const io::Asset& body, const
     options.rignet = &models;
     return pipelines::skin_character(body.mesh, skeleton, options);
   }
+  if (arguments.method == "neuroskinning") {
+    const infer::NeuroskinningModel model = arguments.models.load_neuroskinning();
+    options.neuroskinning = &model;
+    return pipelines::skin_character(body.mesh, skeleton, options);
+  }
   options.bind.method = kMethods.at(arguments.method);
   return pipelines::skin_character(body.mesh, skeleton, options);
 }
@@ -137,11 +142,12 @@ void skin_body(const SkinArguments& arguments) {
 }
 
 void add_method_options(CLI::App& command, SkinArguments& arguments) {
-  std::vector<std::string> names{"rignet"};
+  std::vector<std::string> names{"rignet", "neuroskinning"};
   for (const auto& [name, method] : kMethods) names.push_back(name);
   command
       .add_option("--method", arguments.method,
-                  "How to bind: geodesic voxels, bone heat, biharmonic, nearest bone, another mesh's weights, or networks")
+                  "How to bind: geodesic voxels, bone heat, biharmonic, nearest bone, another mesh's weights, or networks (RigNet's, "
+                  "NeuroSkinning's)")
       ->check(CLI::IsMember(names))
       ->capture_default_str();
   command.add_option("--from", arguments.from, "For --method transfer: the rigged mesh whose weights to take")->type_name("FILE");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "evaluation.h"
@@ -14,20 +15,24 @@ namespace {
 
 struct NamedMethod {
   const char* name;
-  std::optional<skin::Method> method;  // empty: the networks
+  std::optional<skin::Method> method;  // empty: networks
 };
-constexpr std::array<NamedMethod, 5> kMethods{{{"rigid", skin::Method::rigid},
+constexpr std::array<NamedMethod, 6> kMethods{{{"rigid", skin::Method::rigid},
                                                {"geovoxel", skin::Method::geovoxel},
                                                {"heat", skin::Method::heat},
                                                {"biharmonic", skin::Method::biharmonic},
-                                               {"rignet", std::nullopt}}};
+                                               {"rignet", std::nullopt},
+                                               {"neuroskinning", std::nullopt}}};
 
-SkinWeights weights_by(const NamedMethod& method, const Rig& rig, const infer::RignetModels& models) {
+SkinWeights weights_by(const NamedMethod& method, const Rig& rig, const infer::RignetModels& models,
+                       const infer::NeuroskinningModel& neuroskinning) {
   pipelines::SkinCharacterOptions options;
   if (method.method)
     options.bind.method = *method.method;
-  else
+  else if (std::string_view(method.name) == "rignet")
     options.rignet = &models;
+  else
+    options.neuroskinning = &neuroskinning;
   SkinWeights weights = pipelines::skin_character(rig.mesh, rig.skeleton, options).weights;
   validate(weights, rig.mesh.positions.size(), rig.skeleton.size());
   return weights;
@@ -38,7 +43,7 @@ std::vector<double> values(const metrics::SkinScores& s) { return {s.precision, 
 }  // namespace
 
 metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const std::string& split, const infer::RignetModels& models,
-                                       const std::vector<metrics::ScoreColumn>& columns) {
+                                       const infer::NeuroskinningModel& neuroskinning, const std::vector<metrics::ScoreColumn>& columns) {
   struct Outcome {
     std::vector<metrics::ScoreRow> rows;
     std::vector<std::string> failures;
@@ -49,7 +54,7 @@ metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const 
       data, split, [&](std::size_t count) { outcomes.resize(count); },
       [&](std::size_t i, const Subject& subject) {
         for (const NamedMethod& method : kMethods) try {
-            const SkinWeights weights = weights_by(method, subject.rig, models);
+            const SkinWeights weights = weights_by(method, subject.rig, models, neuroskinning);
             outcomes[i].rows.push_back({subject.info.id, method.name, values(subject.reference.skin_scores(weights))});
           } catch (const Error& e) {
             outcomes[i].failures.push_back(fmt::format("{}: {}: {}", subject.info.id, method.name, e.what()));

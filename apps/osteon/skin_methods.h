@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "osteon/infer/neuroskinning.h"
 #include "osteon/infer/rignet.h"
 #include "osteon/metrics/score_table.h"
 
@@ -13,6 +14,6 @@ namespace osteon::app {
 // Every method's skin for the reference's skeleton, on the characters of a split. The "category" of a row is the method.
 // Columns: precision, recall, L1, mean and max distance.
 metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const std::string& split, const infer::RignetModels& models,
-                                       const std::vector<metrics::ScoreColumn>& columns);
+                                       const infer::NeuroskinningModel& neuroskinning, const std::vector<metrics::ScoreColumn>& columns);
 
 }  // namespace osteon::app

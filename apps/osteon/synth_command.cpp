@@ -8,6 +8,7 @@
 #include "contact_sheet.h"
 #include "osteon/io/save.h"
 #include "osteon/synth/character.h"
+#include "osteon/synth/garments.h"
 
 namespace osteon::app {
 namespace {
@@ -16,7 +17,7 @@ struct SynthArguments {
   std::string kind;
   std::filesystem::path output;
   std::uint64_t seed = 1;
-  bool bare = false;
+  bool bare = false, dressed = false;
   std::size_t sheet = 0;  // characters of each kind on a contact sheet; 0: none
   synth::CharacterOptions options;
 };
@@ -35,6 +36,7 @@ void make(const SynthArguments& arguments) {
   if (arguments.sheet > 0) return make_sheet(arguments);
   if (arguments.kind.empty()) throw Error("synth: expected a kind of character, or --sheet for all kinds");
   Rig rig = synth::make_character(synth::kind_of(arguments.kind), arguments.seed, arguments.options);
+  if (arguments.dressed) rig = synth::dressed(rig, arguments.seed).rig;
   if (arguments.bare) {
     io::save_obj(arguments.output, rig.mesh);
   } else {
@@ -60,6 +62,7 @@ void add_synth_command(CLI::App& app) {
   command->add_flag_callback(
       "--smooth", [arguments] { arguments->options.finish = synth::Finish::Smooth; },
       "Small faces everywhere; otherwise the seed may choose few large ones");
+  command->add_flag("--dressed", arguments->dressed, "With a skirt, a cloak or wide sleeves (biped only)");
   command->add_flag("--bare", arguments->bare, "Only the mesh, as OBJ");
   command->add_option("--sheet", arguments->sheet, "Only a picture of so many characters of the kind, or of each kind where none is given");
   command->add_option("-o,--output", arguments->output, "The GLB to write (with --bare: the OBJ; with --sheet: the PNG)")->required();

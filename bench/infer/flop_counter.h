@@ -42,6 +42,11 @@ class Counter {
   }
   Tensor rows(const Tensor& x, const Index& picked) { return {picked.count, x.columns}; }
   Tensor max_by(const Tensor& x, const Index& offsets) { return {offsets.count - 1, x.columns}; }
+  Tensor mean_of(const Tensor& x, const Index& offsets, const Index&) { return {offsets.count - 1, x.columns}; }
+  Tensor attend(const Tensor& x, const Index&, const Index& sources, int) {
+    flop += 4 * sources.count * x.columns;  // a dot product and a weighted sum
+    return x;
+  }
 };
 
 inline double flop_of(Network network, const NetworkInput& input) {
@@ -72,6 +77,12 @@ inline double flop_of(Network network, const NetworkInput& input) {
       break;
     case Network::bind:
       nets::bind_net(b, mesh, nets::on_backend(b, *input.choices));
+      break;
+    case Network::neuroskinning:
+      nets::neuroskinning::joint_choice_net(b, mesh, nets::on_backend(b, *input.neuro));
+      break;
+    case Network::neuroskinning_2019:
+      nets::neuroskinning::slot_net(b, mesh, nets::on_backend(b, *input.neuro));
       break;
   }
   return b.flop;

@@ -43,6 +43,7 @@ inline test::ExampleInput regular_input(std::uint32_t vertices) {
   input.mesh = tube(vertices);
   input.choices = of_vertices.choices;
   input.votes = of_vertices.votes;
+  input.neuro = of_vertices.neuro;
   input.skin_features.assign(vertices * nets::rignet::skin_inputs, 0.5f);
   return input;
 }

@@ -80,6 +80,7 @@ void measure(const Rig& rig, const Skeleton& skeleton, const std::vector<NamedMe
 
 void run(const fs::path& folder) {
   const infer::RignetModels rignet = infer::RignetModels::load();
+  const infer::NeuroskinningModel neuroskinning = infer::NeuroskinningModel::load();
   std::vector<NamedMethod> methods;
   for (const auto& [name, method] : {std::pair{"geovoxel", skin::Method::geovoxel},
                                      {"heat", skin::Method::heat},
@@ -87,6 +88,7 @@ void run(const fs::path& folder) {
                                      {"rigid", skin::Method::rigid}})
     methods.emplace_back(name).options.bind.method = method;
   methods.emplace_back("rignet").options.rignet = &rignet;
+  methods.emplace_back("neuroskinning").options.neuroskinning = &neuroskinning;
 
   std::vector<metrics::PlotLine> lines;
   fmt::print("| vertices | joints |");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
+#include "osteon/pipelines/neuroskinning.h"
 #include "osteon/skin/bind.h"
 #include "osteon/synth/character.h"
 
@@ -46,8 +47,19 @@ void by_method(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(bind(rig.mesh, rig.skeleton, options));
 }
 
+// By the shipped network, loading it not included: about 5,000 vertices and, cut in two, 60 joints.
+void by_neuroskinning(benchmark::State& state) {
+  const infer::NeuroskinningModel model = infer::NeuroskinningModel::load();
+  const Rig rig = biped(72);
+  const Skeleton skeleton = subdivided(rig.skeleton, static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(pipelines::neuroskinning_weights(rig.mesh, skeleton, model));
+  state.counters["vertices"] = static_cast<double>(rig.mesh.positions.size());
+  state.counters["joints"] = static_cast<double>(skeleton.size());
+}
+
 BENCHMARK(by_vertices)->Arg(64)->Arg(128)->Arg(256)->Arg(400)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(by_bones)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(by_neuroskinning)->Arg(1)->Arg(2)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(by_method)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

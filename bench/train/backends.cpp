@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// backends MODELS [VERTICES]: the networks in the folders MODELS/rignet and MODELS/rignet-2020 by oneDNN, as they are used, and by plain
-// LibTorch operations, in turns in one process on all cores: median time of each, how many times faster ours is, and the largest difference
-// of the outputs in parts of the largest value.
+// backends MODELS [VERTICES]: the networks in the folders MODELS/rignet, rignet-2020 and neuroskinning by oneDNN, as they are used, and by
+// plain LibTorch operations, in turns in one process on all cores: median time of each, how many times faster ours is, and the largest
+// difference of the outputs in parts of the largest value.
 #include <ATen/Parallel.h>
 #include <ATen/core/grad_mode.h>
 #include <fmt/core.h>
@@ -71,7 +71,7 @@ void run(const fs::path& models, std::uint32_t vertices) {
   fmt::print("| {} vertices, {} threads | Osteon, ms | LibTorch, ms | times faster | difference |\n|---|---|---|---|---|\n", vertices,
              threads());
   for (const Network network : nets::rignet::kNetworks)
-    for (const char* folder : {"rignet", "rignet-2020"})
+    for (const char* folder : {"rignet", "rignet-2020", "neuroskinning"})
       if (const fs::path file = models / folder / fmt::format("{}.safetensors", nets::rignet::name_of(network)); fs::exists(file)) {
         compare(network, file, input);
         break;

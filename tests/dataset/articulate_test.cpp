@@ -52,6 +52,17 @@ TEST(RandomArticulation, changes_both_sides_alike_when_asked_to) {
   }
 }
 
+TEST(Articulated, joints_axes_turn_with_their_parts) {
+  Articulation a{PerJoint<Eigen::Matrix3f>(3, Eigen::Matrix3f::Identity()), capsule().skeleton.rest_positions};
+  const Quatf turn(Eigen::AngleAxisf(0.4f, Vec3f::UnitZ()));
+  a.linear[JointId{1}] = 1.3f * turn.toRotationMatrix();
+  const PreparedCharacter changed = articulated(capsule(), a);
+  for (const std::uint16_t j : {0, 1, 2}) {
+    const Quatf& before = capsule().skeleton.rest_orientations[JointId{j}];
+    EXPECT_LT(changed.skeleton.rest_orientations[JointId{j}].angularDistance(j == 1 ? turn * before : before), 1e-3f);
+  }
+}
+
 TEST(RandomArticulation, without_bends_and_proportions_is_the_rest_pose) {
   Random random(3);
   const Articulation a = random_articulation(figure(), kMiddle, {.largest_bend = 0.0f, .proportion = 0.0f}, random);
@@ -64,8 +75,7 @@ TEST(RandomArticulation, without_proportions_keeps_the_lengths_of_bones) {
   const Skeleton rest = figure();
   const Articulation a = random_articulation(rest, std::nullopt, {.largest_bend = 1.0f, .proportion = 0.0f}, random);
   for (const Bone& bone : bones(rest))
-    if (bone.end)
-      EXPECT_NEAR((a.joints[*bone.end] - a.joints[bone.start]).norm(), (bone.segment.b - bone.segment.a).norm(), 1e-5f);
+    if (bone.end) EXPECT_NEAR((a.joints[*bone.end] - a.joints[bone.start]).norm(), (bone.segment.b - bone.segment.a).norm(), 1e-5f);
 }
 
 // Doing nothing gives what prepare() gave, but for the scale: that was of the original's box, and the reduced mesh fills it less.

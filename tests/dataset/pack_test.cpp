@@ -12,6 +12,7 @@ namespace {
 std::vector<PreparedCharacter> two_characters() {
   Rig bent = test::capsule_character();
   for (Vec3f& p : bent.mesh.positions) p.x() += 0.1f * p.y() * p.y();
+  orient_along_bones(bent.skeleton);
   return {prepare(test::capsule_character(), {"straight", "g", "other"}), prepare(bent, {"bent", "g", "fish"})};
 }
 
@@ -41,6 +42,8 @@ TEST(Pack, gives_back_what_was_saved) {
     EXPECT_EQ(a.skeleton.names, b.skeleton.names);
     EXPECT_EQ(a.skeleton.parents, b.skeleton.parents);
     EXPECT_EQ(a.skeleton.rest_positions, b.skeleton.rest_positions);
+    for (JointId j : a.skeleton.names.ids())
+      EXPECT_LT(a.skeleton.rest_orientations[j].angularDistance(b.skeleton.rest_orientations[j]), 1e-3f);
     EXPECT_EQ(a.attention, b.attention);
     EXPECT_EQ(a.tolerances, b.tolerances);
     EXPECT_EQ(a.normalization.scale, b.normalization.scale);
@@ -137,7 +140,8 @@ TEST(Pack, names_what_is_missing_or_does_not_fit) {
     save_safetensors(folder / "y.safetensors", broken);
     return test::error_of([&] { load_characters(folder / "y.safetensors"); });
   };
-  for (const auto& [name, array] : good.arrays) EXPECT_THAT(error_without(name), testing::HasSubstr(name));
+  for (const auto& [name, array] : good.arrays)
+    if (!name.ends_with("/orientations")) EXPECT_THAT(error_without(name), testing::HasSubstr(name));  // files of before hold none
   Safetensors broken = good;
   broken.arrays["bent/attention"] = Array::of<std::uint8_t>(std::vector<std::uint8_t>{1}, {1});
   save_safetensors(folder / "y.safetensors", broken);

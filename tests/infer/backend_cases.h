@@ -49,6 +49,7 @@ inline infer::Shapes case_shapes() {
   add_mlp(shapes, "conv", {12, 10, 10});
   add_mlp(shapes, "picked", {6 + 3, 20, 5});
   add_linear(shapes, "out", 4, 16);
+  add_norm(shapes, "heard", 16);
   return shapes;
 }
 
@@ -102,6 +103,13 @@ std::vector<std::pair<std::string, Matrix>> outputs_of_cases(Run&& run) {
     const auto x = mlp(s), own = s.values(8, 3);
     const auto index = s.b.index(picked);
     return nets::mlp<B>(s.b, Path("picked"), {{x, index}, own}, {20, 5});
+  });
+  add("mean_of", [&](S& s) { return s.b.mean_of(s.values(80, 6), s.b.index(mesh.geodesic.offsets), s.b.index(mesh.geodesic.sources)); });
+  add("mean_of mlp", [&](S& s) { return s.b.mean_of(wide_mlp(s), s.b.index(mesh.geodesic.offsets), s.b.index(mesh.geodesic.sources)); });
+  add("attend", [&](S& s) { return s.b.attend(s.values(80, 32), s.b.index(mesh.ring.offsets), s.b.index(mesh.ring.sources), 2); });
+  add("linear of relu_norm of attend", [&](S& s) {
+    const auto heard = s.b.attend(s.values(80, 16), s.b.index(mesh.ring.offsets), s.b.index(mesh.ring.sources), 1);
+    return nets::linear<B>(s.b, Path("out"), {nets::relu_norm(s.b, Path("heard"), heard)}, 4);
   });
   return out;
 }

@@ -44,7 +44,7 @@ inline infer::Parameters random_parameters(Network network, std::uint64_t seed) 
 
 // Vertices in the unit box with 3 to 8 one-ring and 0 to 12 geodesic neighbours each, joints, all pairs of them, skin features.
 struct ExampleInput : nets::NetworkInputs {
-  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features, &choices, &votes, &tree}; }
+  infer::NetworkInput view() const { return {mesh, &joints, &pairs, skin_features, &choices, &votes, &tree, &neuro}; }
 
   void add_mesh(std::size_t vertices, std::size_t joint_count, Random& random) {
     const std::int32_t first_vertex = mesh.batch.rows(), first_joint = joints.batch.rows();
@@ -55,7 +55,8 @@ struct ExampleInput : nets::NetworkInputs {
     add_neighbours(mesh.ring, vertices, 3, 8, first_vertex, random);
     add_neighbours(mesh.geodesic, vertices, 0, 12, first_vertex, random);
     mesh.batch.add(vertices);
-    add_choices(vertices, random);
+    add_choices(choices, nets::bind_features, vertices, random);
+    add_neuro(vertices, first_vertex, random);
     append(joints.positions, 3 * joint_count, random);
     append(joints.plane_distance, joint_count, random);
     joints.pairs.add_complete(static_cast<std::int32_t>(joint_count), first_joint);
@@ -94,12 +95,19 @@ struct ExampleInput : nets::NetworkInputs {
   static void append(std::vector<float>& to, std::size_t count, Random& random) {
     for (std::size_t i = 0; i < count; ++i) to.push_back(random.uniform());
   }
+  void add_neuro(std::size_t vertices, std::int32_t first_vertex, Random& random) {
+    append(neuro.features, (nets::neuro_vertex_features + nets::neuro_slots) * vertices, random);
+    const std::size_t before = neuro.choices.bone_offsets.size();
+    add_choices(neuro.choices, nets::neuro_choice_features, vertices, random);
+    append(neuro.joints, (nets::neuro_joint_features + nets::neuro_kinds) * (neuro.choices.bone_offsets.size() - before), random);
+    for (nets::EdgeArrays& nearest : neuro.nearest) add_neighbours(nearest, vertices, 0, 12, first_vertex, random);
+  }
   // 1 to 8 bones for each vertex
-  void add_choices(std::size_t vertices, Random& random) {
+  static void add_choices(nets::BindArrays& choices, int width, std::size_t vertices, Random& random) {
     std::vector<std::int32_t> offsets{0};
     for (std::size_t v = 0; v < vertices; ++v) offsets.push_back(offsets.back() + 1 + static_cast<std::int32_t>(random.below(8)));
     std::vector<float> features;
-    append(features, static_cast<std::size_t>(offsets.back() * nets::bind_features), random);
+    append(features, static_cast<std::size_t>(offsets.back() * width), random);
     std::vector<std::int32_t> bones;
     for (std::int32_t i = 0; i < offsets.back(); ++i) bones.push_back(static_cast<std::int32_t>(random.below(9)));
     choices.add(features, offsets, bones);

@@ -81,17 +81,27 @@ ExampleInput renumbered(const ExampleInput& input, const std::vector<std::uint32
   };
   out.mesh.ring = edges(input.mesh.ring);
   out.mesh.geodesic = edges(input.mesh.geodesic);
-  std::vector<float> of_choices;
-  std::vector<std::int32_t> offsets{0}, bones;
-  for (const std::size_t v : vertex_at) {
-    const std::int32_t first = input.choices.offsets[v], last = input.choices.offsets[v + 1];
-    const float* rows = input.choices.features.data();
-    of_choices.insert(of_choices.end(), rows + first * nets::bind_features, rows + last * nets::bind_features);
-    bones.insert(bones.end(), input.choices.bone_of.begin() + first, input.choices.bone_of.begin() + last);
-    offsets.push_back(offsets.back() + last - first);
-  }
-  out.choices = {};
-  out.choices.add(of_choices, offsets, bones);
+  auto choices = [&](const nets::BindArrays& before, int width) {
+    std::vector<float> of_choices;
+    std::vector<std::int32_t> offsets{0}, bones;
+    for (const std::size_t v : vertex_at) {
+      const std::int32_t first = before.offsets[v], last = before.offsets[v + 1];
+      const float* rows = before.features.data();
+      of_choices.insert(of_choices.end(), rows + first * width, rows + last * width);
+      bones.insert(bones.end(), before.bone_of.begin() + first, before.bone_of.begin() + last);
+      offsets.push_back(offsets.back() + last - first);
+    }
+    nets::BindArrays after;
+    after.add(of_choices, offsets, bones);
+    return after;
+  };
+  out.choices = choices(input.choices, nets::bind_features);
+  out.neuro.choices = choices(input.neuro.choices, nets::neuro_choice_features);
+  constexpr std::size_t width = nets::neuro_vertex_features + nets::neuro_slots;
+  for (std::size_t v = 0; v < place.size(); ++v)
+    std::copy_n(input.neuro.features.begin() + static_cast<std::ptrdiff_t>(width * v), width,
+                out.neuro.features.begin() + static_cast<std::ptrdiff_t>(width * place[v]));
+  for (std::size_t level = 0; level < out.neuro.nearest.size(); ++level) out.neuro.nearest[level] = edges(input.neuro.nearest[level]);
   return out;
 }
 
@@ -100,11 +110,16 @@ std::vector<std::int32_t> places_of_rows(Network network, const ExampleInput& be
                                          const std::vector<std::uint32_t>& place, Eigen::Index rows) {
   std::vector<std::int32_t> out(static_cast<std::size_t>(rows));
   std::iota(out.begin(), out.end(), 0);  // pairs and joints stay
-  if (network == Network::bind)
+  const auto by_choices = [&](const nets::BindArrays& old_rows, const nets::BindArrays& new_rows) {
     for (std::size_t r = 0; r < out.size(); ++r) {
-      const auto v = static_cast<std::size_t>(before.choices.vertex_of[r]);
-      out[r] = after.choices.offsets[place[v]] + static_cast<std::int32_t>(r) - before.choices.offsets[v];
+      const auto v = static_cast<std::size_t>(old_rows.vertex_of[r]);
+      out[r] = new_rows.offsets[place[v]] + static_cast<std::int32_t>(r) - old_rows.offsets[v];
     }
+  };
+  if (network == Network::bind)
+    by_choices(before.choices, after.choices);
+  else if (network == Network::neuroskinning)
+    by_choices(before.neuro.choices, after.neuro.choices);
   else if (out.size() == place.size())
     out.assign(place.begin(), place.end());
   return out;

@@ -116,6 +116,16 @@ TEST_F(SkinCommand, a_skeleton_in_centimetres_is_brought_to_the_body_by_one_node
   for (JointId j : rig_.skeleton.names.ids()) EXPECT_VEC3_NEAR(out.skeleton->rest_positions[j], rig_.skeleton.rest_positions[j], 1e-4f);
 }
 
+TEST_F(SkinCommand, binds_by_neuroskinning_the_same_with_one_and_two_threads) {
+  const auto run = osteon(folder_, "skin body.obj --skeleton hero.glb --method neuroskinning -o one.glb --report one.json --threads 1");
+  ASSERT_EQ(run.code, 0) << run.err;
+  ASSERT_EQ(osteon(folder_, "skin body.obj --skeleton hero.glb --method neuroskinning -o two.glb --threads 2").code, 0);
+  EXPECT_TRUE(test::content(folder_ / "one.glb") == test::content(folder_ / "two.glb"));
+  const Json report = Json::parse(test::content(folder_ / "one.json"));
+  EXPECT_EQ(report["unweighted_vertices"], 0);
+  EXPECT_EQ(report["method"], "neuroskinning");
+}
+
 TEST_F(SkinCommand, the_same_bytes_with_one_and_two_threads) {
   ASSERT_EQ(osteon(folder_, "skin body.obj --skeleton hero.glb -o one.glb --threads 1").code, 0);
   ASSERT_EQ(osteon(folder_, "skin body.obj --skeleton hero.glb -o two.glb --threads 2").code, 0);
@@ -123,7 +133,7 @@ TEST_F(SkinCommand, the_same_bytes_with_one_and_two_threads) {
 }
 
 TEST_F(SkinCommand, every_method_weighs_every_vertex) {
-  for (const char* method : {"rigid", "heat", "biharmonic", "transfer --from hero.glb"}) {
+  for (const char* method : {"rigid", "heat", "biharmonic", "neuroskinning", "transfer --from hero.glb"}) {
     const auto run = osteon(folder_, fmt::format("skin body.obj --skeleton hero.glb -o out.glb --method {}", method));
     ASSERT_EQ(run.code, 0) << run.err;
     const io::Asset out = io::load(folder_ / "out.glb");

@@ -7,48 +7,13 @@
 #include "geometry/mesh_makers.h"
 #include "osteon/base/random.h"
 #include "osteon/skin/bind.h"
+#include "skin/heaps.h"
 #include "support/expect.h"
 
 namespace osteon::skin {
 namespace {
 
 constexpr std::array kMethods{Method::rigid, Method::geovoxel, Method::heat, Method::biharmonic};
-
-Vec3f anywhere(Random& random, float size) {
-  Vec3f p;
-  for (float& x : p) x = size * random.normal();
-  return p;
-}
-
-TriangleMesh ball(Random& random) {
-  const TriangleMesh sphere = shapes::icosphere(1, random.uniform(0.05f, 0.35f));
-  return test::moved(sphere, anywhere(random, 0.4f));
-}
-
-// Open, with faces that look both ways, points used twice, faces through one another.
-TriangleMesh pieces(Random& random) {
-  TriangleMesh mesh = shapes::sheet(3 + static_cast<int>(random.below(6)), 4);
-  const std::size_t parts = 1 + random.below(12);
-  for (std::size_t k = 0; k < parts; ++k) {
-    TriangleMesh part = random.below(3) == 0 ? test::moved(shapes::sheet(2, 3), anywhere(random, 0.5f)) : ball(random);
-    if (random.below(2) == 0) part = test::flipped(part);
-    if (random.below(4) == 0) part = test::unshared(part);
-    if (random.below(4) == 0) part = shapes::merged(part, part);
-    mesh = shapes::merged(mesh, part);
-  }
-  for (std::size_t k = 0; k < random.below(8); ++k) mesh.positions.push_back(anywhere(random, 2.0f));  // of no face
-  return mesh;
-}
-
-Skeleton any_skeleton(Random& random) {
-  Skeleton s;
-  s.add("root", std::nullopt, anywhere(random, 0.3f));
-  const std::size_t joints = random.below(8);
-  for (std::size_t j = 1; j <= joints; ++j)
-    s.add("j" + std::to_string(j), static_cast<JointId>(random.below(j)),
-          random.below(4) == 0 ? s.rest_positions[JointId{0}] : anywhere(random, 0.6f));
-  return s;
-}
 
 void expect_exact(const SkinWeights& weights, const TriangleMesh& mesh, const Skeleton& skeleton) {
   validate(weights, mesh.positions.size(), skeleton.size());
@@ -62,8 +27,8 @@ void expect_exact(const SkinWeights& weights, const TriangleMesh& mesh, const Sk
 TEST(Torture, a_hundred_heaps_of_pieces) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Random random(seed);
-    const TriangleMesh mesh = pieces(random);
-    const Skeleton skeleton = any_skeleton(random);
+    const TriangleMesh mesh = test::heap_of_pieces(random);
+    const Skeleton skeleton = test::any_skeleton(random);
     BindOptions options;
     options.method = kMethods[seed % kMethods.size()];
     options.resolution = 48;
@@ -75,8 +40,8 @@ TEST(Torture, a_hundred_heaps_of_pieces) {
 TEST(Torture, five_hundred_parts) {
   Random random(5);
   TriangleMesh mesh = shapes::icosphere(2, 0.5f);
-  for (int k = 0; k < 500; ++k) mesh = shapes::merged(mesh, test::moved(shapes::icosphere(0, 0.02f), anywhere(random, 0.5f)));
-  const Skeleton skeleton = any_skeleton(random);
+  for (int k = 0; k < 500; ++k) mesh = shapes::merged(mesh, test::moved(shapes::icosphere(0, 0.02f), test::anywhere(random, 0.5f)));
+  const Skeleton skeleton = test::any_skeleton(random);
   for (const Method method : kMethods) {
     BindOptions options;
     options.method = method;

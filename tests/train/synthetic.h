@@ -28,6 +28,23 @@ inline void add_features(NetworkInputs& inputs, int vertices, Random random) {
   inputs.choices.add(features, choice_offsets, bones);
 }
 
+// What the NeuroSkinning networks read; the nearest vertices are those of the geodesic neighbours.
+inline void add_neuro(NetworkInputs& inputs, int vertices, Random random) {
+  nets::NeuroArrays& neuro = inputs.neuro;
+  const auto add = [&](std::vector<float>& to, int count) {
+    for (int i = 0; i < count; ++i) to.push_back(random.uniform(-1.0f, 1.0f));
+  };
+  add(neuro.features, vertices * (nets::neuro_vertex_features + nets::neuro_slots));
+  std::vector<std::int32_t> offsets{0}, joints;
+  for (int v = 0; v < vertices; ++v) offsets.push_back(offsets.back() + 1 + v % 4);
+  for (int i = 0; i < offsets.back(); ++i) joints.push_back(static_cast<std::int32_t>(random.below(7)));
+  std::vector<float> features;
+  add(features, offsets.back() * nets::neuro_choice_features);
+  const std::size_t before = neuro.choices.bone_offsets.size();
+  neuro.choices.add(features, offsets, joints);
+  add(neuro.joints, static_cast<int>(neuro.choices.bone_offsets.size() - before) * (nets::neuro_joint_features + nets::neuro_kinds));
+}
+
 // `vertices` points near a circle; neighbours at one and two steps (one-ring) and at three and five (geodesic).
 inline void add_ring_mesh(NetworkInputs& inputs, int vertices, Random& random) {
   std::vector<std::uint32_t> offsets{0}, ring, geodesic;
@@ -46,6 +63,8 @@ inline void add_ring_mesh(NetworkInputs& inputs, int vertices, Random& random) {
   inputs.mesh.batch.add(static_cast<std::size_t>(vertices));
   for (int i = 0; i < vertices * nets::rignet::skin_inputs; ++i) inputs.skin_features.push_back(random.uniform(-1.0f, 1.0f));
   add_features(inputs, vertices, Random(static_cast<std::uint64_t>(vertices)));
+  add_neuro(inputs, vertices, Random(static_cast<std::uint64_t>(vertices) + 1));
+  for (nets::EdgeArrays& nearest : inputs.neuro.nearest) nearest.add(offsets, geodesic, first);
 }
 
 inline void add_joints(NetworkInputs& inputs, int joints, Random& random) {

@@ -42,6 +42,9 @@ Eigen::Matrix3f mirrored(const Eigen::Matrix3f& rotation, const Plane& plane) {
   return mirror * rotation * mirror;
 }
 
+// A rotation times a size, without the size.
+Eigen::Matrix3f rotation_of(const Eigen::Matrix3f& linear) { return linear / std::cbrt(linear.determinant()); }
+
 }  // namespace
 
 PerJoint<std::optional<JointId>> mirror_partners(const Skeleton& skeleton, const std::optional<Plane>& symmetry) {
@@ -103,6 +106,8 @@ PreparedCharacter articulated(const PreparedCharacter& character, const Articula
   }
   out.mesh.positions = skin::skin(character.mesh.positions, character.weights, transforms);
   out.skeleton.rest_positions = articulation.joints;
+  for (JointId j : out.skeleton.names.ids())
+    out.skeleton.rest_orientations[j] = Quatf(rotation_of(articulation.linear[j])) * character.skeleton.rest_orientations[j];
   const geometry::Normalization again = geometry::normalization_of(out.mesh);
   for (Vec3f& p : out.mesh.positions) p = again.apply(p);
   for (Vec3f& p : out.skeleton.rest_positions) p = again.apply(p);

@@ -24,8 +24,11 @@ struct AugmentOptions {
   float joint_count_blur = 0.15f;    // standard deviation of the logarithm of the number of joints that the voting network is told
   float reduce = 0.7f;               // probability of fewer vertices, where no weights are learned ...
   std::size_t least_vertices = 500;  // ... from here up to as many as there are
+  float nameless = 0.25f;            // probability that joints' names are not read, where they would be
 
-  static AugmentOptions none() { return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f}; }
+  static AugmentOptions none() {
+    return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 500, 0.0f};
+  }
 };
 
 // An affine map of a character: its labels stay true.

@@ -8,6 +8,7 @@
 
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/fold.h"
+#include "osteon/dataset/neuro.h"
 #include "osteon/geometry/decimate.h"
 #include "osteon/geometry/regions.h"
 #include "osteon/geometry/symmetry.h"
@@ -54,6 +55,7 @@ Example example_of(PreparedCharacter character, Parts parts, const std::optional
     example.choices = bind_choices(character);
     example.skin_targets = skin_targets(character, example.choices);
   }
+  if (parts == Parts::neuro || parts == Parts::neuro_2019) derive_neuro(example, character, parts);
   example.character = std::move(character);
   return example;
 }
@@ -273,6 +275,8 @@ Batch training_batch(std::span<const Example* const> examples, const BatchOption
     }
     if (options.parts == Parts::skin) add_skin(batch, example, placement);
     if (options.parts == Parts::bind) add_choices(batch, example, placement);
+    if (options.parts == Parts::neuro || options.parts == Parts::neuro_2019)
+      add_neuro(batch, example, placement, options, random.uniform() >= augment.nameless);
     if (options.parts != Parts::pairs) continue;
     for (Pair pair : pairs_of(example)) {
       if (random.uniform() < 0.5f) std::swap(pair.first, pair.second);
@@ -296,6 +300,7 @@ Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& 
     }
     if (options.parts == Parts::skin) add_skin(batch, *example, {});
     if (options.parts == Parts::bind) add_choices(batch, *example, {});
+    if (options.parts == Parts::neuro || options.parts == Parts::neuro_2019) add_neuro(batch, *example, {}, options, true);
     if (options.parts != Parts::pairs) continue;
     const std::vector<Pair> pairs = pairs_of(*example);
     for (const Pair& pair : pairs) add_pair(batch, *example, pair, {});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "osteon/dataset/prepared.h"
 #include "osteon/geometry/vote_features.h"
 #include "osteon/nets/graph.h"
+#include "osteon/skin/bone_choices.h"
+#include "osteon/skin/super_skeleton.h"
 
 namespace osteon::dataset {
 
@@ -24,7 +27,9 @@ struct Example {
   Matrix inside;                          // (J,J) share of the way between two joints that is inside; tree only
   Matrix skin_features;                   // (V,43); skin only
   geometry::IndexMatrix choices;          // (V,8) the bones that each vertex may follow, -1: none; bind only
-  geometry::SkinTargets skin_targets;     // skin: (V,5) and (V); bind: (V,8) and (V), 0 where there are fewer bones
+  geometry::SkinTargets skin_targets;     // skin: (V,5) and (V); bind: (V,8) and (V), 0 where there are fewer bones; neuro: (V,10) and (V)
+  skin::BoneChoices bone_choices;         // neuro only
+  geometry::GeodesicBalls wide_balls;     // the 63 nearest vertices of each; neuro and neuro_2019 only
 };
 
 std::vector<Example> examples_of(std::vector<PreparedCharacter> characters, Parts parts);  // in parallel
@@ -41,6 +46,9 @@ struct BatchTargets {
   std::vector<float> connected;         // (P) 0 or 1; pairs only
   std::vector<std::int64_t> parents;    // (J) within the skeleton, the root's is itself; tree only
   std::vector<float> skin, skin_share;  // (V,5), bind: (V,8), rows sum to 1 or are 0; (V) which part of the vertex's weight these can carry
+                                        // neuro: (C) of each row; neuro_2019: (V,slots)
+  std::vector<float> log_shares;        // (C) geometric, neuro only
+  std::vector<float> slots;             // (V,slots) 0 for those that the skeleton has, else a large negative number; neuro_2019 only
 };
 
 struct Batch {
@@ -49,8 +57,9 @@ struct Batch {
 };
 
 struct BatchOptions {
-  Parts parts = Parts::joints;  // joints: attention too; pairs: joints too; tree: joints alone, no mesh
-  std::size_t neighbours = 10;  // geodesic ones of a vertex
+  Parts parts = Parts::joints;                                     // joints: attention too; pairs: joints too; tree: joints alone, no mesh
+  std::size_t neighbours = 10;                                     // geodesic ones of a vertex
+  std::shared_ptr<const skin::SuperSkeleton> super_skeleton = {};  // neuro and neuro_2019
 };
 
 // For training: every character changed through its rig and placed anew, neighbours drawn anew, each pair of joints in random order.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/dataset/clean_targets.h"
 
-#include <optional>
 #include <vector>
 
 #include "osteon/base/parallel.h"
@@ -9,14 +8,6 @@
 
 namespace osteon::dataset {
 namespace {
-
-// The joint of `merged` that `position`, a child of `parent`, falls on: the parent itself or an earlier child of it.
-std::optional<JointId> joint_at(const Skeleton& merged, JointId parent, const Vec3f& position, float distance) {
-  if ((merged.rest_positions[parent] - position).norm() < distance) return parent;
-  for (JointId j : merged.names.ids())
-    if (merged.parents[j] == parent && (merged.rest_positions[j] - position).norm() < distance) return j;
-  return std::nullopt;
-}
 
 std::vector<Influence> blend(const geometry::ClosestPoint& at, const TriangleMesh& mesh, const SkinWeights& weights,
                              const PerJoint<JointId>& to_joint) {
@@ -28,20 +19,6 @@ std::vector<Influence> blend(const geometry::ClosestPoint& at, const TriangleMes
 }
 
 }  // namespace
-
-MergedSkeleton merge_coincident_joints(const Skeleton& skeleton, float distance) {
-  MergedSkeleton out;
-  for (JointId j : skeleton.names.ids()) {
-    const Vec3f& position = skeleton.rest_positions[j];
-    std::optional<JointId> parent, same;
-    if (skeleton.parents[j]) {
-      parent = out.from_original[*skeleton.parents[j]];
-      same = joint_at(out.skeleton, *parent, position, distance);
-    }
-    out.from_original.push_back(same ? *same : out.skeleton.add(skeleton.names[j], parent, position));
-  }
-  return out;
-}
 
 SkinWeights weights_at(std::span<const Vec3f> points, const TriangleMesh& original, const SkinWeights& weights,
                        const PerJoint<JointId>& to_joint) {

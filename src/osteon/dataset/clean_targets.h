@@ -3,19 +3,13 @@
 
 #include <span>
 
+#include "osteon/rig/coincident_joints.h"
 #include "osteon/rig/rig.h"
 
 namespace osteon::dataset {
 
-// A skeleton in which no joint stands where its parent or a sibling does.
-struct MergedSkeleton {
-  Skeleton skeleton;                // orientations are the identity: they are no target
-  PerJoint<JointId> from_original;  // original joint -> joint of `skeleton`
-};
-
-// Joints nearer than `distance` to their parent or an earlier sibling become one with it: artists stack control joints at one place, which
-// no method can tell apart from the shape. The name and the place of the first joint stay; children go to the merged joint.
-MergedSkeleton merge_coincident_joints(const Skeleton& skeleton, float distance);
+using osteon::merge_coincident_joints;
+using osteon::MergedSkeleton;
 
 // Skin weights at `points`, which lie on or near the surface of `original`: those of the closest surface point, blended between the corners
 // of its face by barycentric coordinates. `to_joint` renames the joints. Pre: one row of `weights` per vertex of `original`.

@@ -19,6 +19,7 @@ using Arrays = std::map<std::string, Array>;
 constexpr std::uint16_t kNoParent = 65535;
 constexpr float kWeightUnit = 65535.0f;  // weights are stored as u16 of 1/65535
 constexpr float kSteps = 65535.0f;       // so many on a mesh's longest side
+constexpr float kHalfTurn = 32767.0f;    // orientations' numbers, -1 .. 1, are stored as u16 of so many a unit
 
 std::int64_t length(std::size_t n) { return static_cast<std::int64_t>(n); }
 
@@ -67,6 +68,14 @@ Array of_parents(const Skeleton& skeleton) {
   return Array::of<std::uint16_t>(flat, {length(flat.size())});
 }
 
+// x, y, z, w of each joint's axes, in 1/32767.
+Array of_orientations(const Skeleton& skeleton) {
+  std::vector<std::uint16_t> flat;
+  for (const Quatf& q : skeleton.rest_orientations)
+    for (const float x : q.coeffs()) flat.push_back(static_cast<std::uint16_t>(std::lround((x + 1.0f) * kHalfTurn)));
+  return Array::of<std::uint16_t>(flat, {length(skeleton.size()), 4});
+}
+
 // "influences" (V): how many each vertex has; "influence_joints" and "influence_weights": all of them, row after row.
 void add_weights(Arrays& arrays, const std::string& prefix, const SkinWeights& weights) {
   std::vector<std::uint16_t> counts, joints, values;
@@ -89,6 +98,7 @@ void add_character(Arrays& arrays, const PreparedCharacter& c) {
   arrays[prefix + "faces"] = of_faces(c.mesh);
   arrays[prefix + "joints"] = of_points(c.skeleton.rest_positions.raw());
   arrays[prefix + "parents"] = of_parents(c.skeleton);
+  arrays[prefix + "orientations"] = of_orientations(c.skeleton);
   arrays[prefix + "tolerances"] = Array::of<float>(c.tolerances.raw(), {length(c.joints())});
   arrays[prefix + "attention"] = Array::of<std::uint8_t>(c.attention, {length(c.attention.size())});
   add_weights(arrays, prefix, c.weights);
@@ -177,6 +187,19 @@ TriangleMesh read_mesh(const Reader& reader, const json& about) {
   return mesh;
 }
 
+// Files of before hold none.
+void read_orientations(const Reader& reader, Skeleton& skeleton) {
+  if (!reader.has("orientations")) return;
+  const auto numbers = reader.values<std::uint16_t>("orientations");
+  reader.expect(numbers.size() == 4 * skeleton.size(), "orientations do not fit the joints");
+  for (JointId j : skeleton.names.ids()) {
+    Quatf& q = skeleton.rest_orientations[j];
+    for (std::size_t k = 0; k < 4; ++k)
+      q.coeffs()[static_cast<Eigen::Index>(k)] = static_cast<float>(numbers[4 * index(j) + k]) / kHalfTurn - 1.0f;
+    q.normalize();
+  }
+}
+
 Skeleton read_skeleton(const Reader& reader, const json& names) {
   Skeleton skeleton;
   const auto positions = reader.points("joints");
@@ -184,6 +207,7 @@ Skeleton read_skeleton(const Reader& reader, const json& names) {
   reader.expect(positions.size() == parents.size() && positions.size() == names.size(), "joints, parents and names differ in number");
   for (std::size_t j = 0; j < positions.size(); ++j)
     skeleton.add(names[j].get<std::string>(), parents[j] == kNoParent ? std::nullopt : std::optional(JointId{parents[j]}), positions[j]);
+  read_orientations(reader, skeleton);
   validate(skeleton);
   return skeleton;
 }

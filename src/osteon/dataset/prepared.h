@@ -57,7 +57,9 @@ struct PreparedCharacter {
 PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptions& options = {});
 
 // Which parts of a character, beside its mesh and joints, a network learns from.
-enum class Parts { joints, pairs, tree, skin, bind };  // joints: attention too; pairs, tree: of joints; skin, bind: bones and weights
+// joints: attention too; pairs, tree: of joints; skin, bind: bones and weights; neuro: these as NeuroSkinning reads them (ours, the
+// paper's)
+enum class Parts { joints, pairs, tree, skin, bind, neuro, neuro_2019 };
 
 // Fills one_ring, balls and voxels from the mesh (prepare() and loading do so).
 void derive_inputs(PreparedCharacter& character);

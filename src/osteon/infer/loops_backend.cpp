@@ -35,5 +35,9 @@ Loops::Tensor Loops::subtract(const Tensor& x, const Tensor& y) { return loops::
 Loops::Tensor Loops::concat(std::initializer_list<Tensor> parts) { return loops::concat({parts.begin(), parts.size()}); }
 Loops::Tensor Loops::rows(const Tensor& x, const Index& picked) { return loops::rows(x, picked); }
 Loops::Tensor Loops::max_by(const Tensor& x, const Index& offsets) { return loops::max_by(x, offsets); }
+Loops::Tensor Loops::mean_of(const Tensor& x, const Index& offsets, const Index& sources) { return loops::mean_of(x, offsets, sources); }
+Loops::Tensor Loops::attend(const Tensor& x, const Index& offsets, const Index& sources, int heads) {
+  return loops::attend(x, offsets, sources, static_cast<std::size_t>(heads));
+}
 
 }  // namespace osteon::infer

@@ -28,6 +28,8 @@ class Loops {
   Tensor concat(std::initializer_list<Tensor> parts);
   Tensor rows(const Tensor& x, const Index& picked);
   Tensor max_by(const Tensor& x, const Index& offsets);
+  Tensor mean_of(const Tensor& x, const Index& offsets, const Index& sources);
+  Tensor attend(const Tensor& x, const Index& offsets, const Index& sources, int heads);
 
   Matrix matrix(const Tensor& x) const { return x.matrix(); }
 

@@ -6,6 +6,7 @@
 #include "osteon/infer/loops_backend.h"
 #include "osteon/infer/onednn_backend.h"
 #include "osteon/nets/binding.h"
+#include "osteon/nets/neuroskinning.h"
 #include "osteon/nets/rignet.h"
 #include "osteon/nets/tree.h"
 #include "osteon/nets/voting.h"
@@ -37,6 +38,10 @@ typename Backend::Tensor output(Network network, Backend& b, const NetworkInput&
       return rignet::skin_net(b, mesh, b.tensor(input.skin_features, input.mesh.batch.rows(), rignet::skin_inputs));
     case Network::bind:
       return nets::bind_net(b, mesh, on_backend(b, *input.choices));
+    case Network::neuroskinning:
+      return nets::neuroskinning::joint_choice_net(b, mesh, on_backend(b, *input.neuro));
+    case Network::neuroskinning_2019:
+      return nets::neuroskinning::slot_net(b, mesh, on_backend(b, *input.neuro));
   }
   assert(false && "no such network");
   return {};

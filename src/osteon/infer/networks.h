@@ -21,6 +21,7 @@ struct NetworkInput {
   const nets::BindArrays* choices = nullptr;  // bind
   const nets::VoteArrays* votes = nullptr;
   const nets::TreeArrays* tree = nullptr;
+  const nets::NeuroArrays* neuro = nullptr;
 };
 
 // The network's output as in nets/rignet.h (logits). Backend: Loops or Onednn; instantiated in networks.cpp.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "osteon/tensor/graph_attention.h"
 #include "osteon/tensor/loops.h"
 #include "osteon/tensor/row_loops.h"
 
@@ -219,6 +220,15 @@ Onednn::Tensor Onednn::max_by(const Tensor& x, const Index& offsets) {
   if (value.numbers) return made(loops::max_by(value.applied(), *offsets.numbers));
   const Affine after = affine_of(value.after, value.columns);
   return made(value.deferred->mlp->max_by(stored_columns(value.deferred->input), *offsets.numbers, after.scale, after.shift));
+}
+
+// A mean of normalised rows is the normalised mean.
+Onednn::Tensor Onednn::mean_of(const Tensor& x, const Index& offsets, const Index& sources) {
+  return made(tensor::mean_of(x.value->stored(), *offsets.numbers, *sources.numbers), x.value->after);
+}
+
+Onednn::Tensor Onednn::attend(const Tensor& x, const Index& offsets, const Index& sources, int heads) {
+  return made(tensor::attend(x.value->applied(), *offsets.numbers, *sources.numbers, static_cast<std::size_t>(heads)));
 }
 
 Matrix Onednn::matrix(const Tensor& x) const { return x.value->applied().matrix(); }

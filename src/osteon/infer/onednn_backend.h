@@ -49,6 +49,8 @@ class Onednn {
   Tensor concat(std::initializer_list<Tensor> parts);
   Tensor rows(const Tensor& x, const Index& picked);
   Tensor max_by(const Tensor& x, const Index& offsets);
+  Tensor mean_of(const Tensor& x, const Index& offsets, const Index& sources);
+  Tensor attend(const Tensor& x, const Index& offsets, const Index& sources, int heads);
 
   // Composites that are faster as a whole: see nets/layers.h.
   Tensor linear_of(const nets::Path& path, const nets::Input<Onednn>& input, int width);

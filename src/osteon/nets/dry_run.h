@@ -11,6 +11,7 @@
 
 #include "osteon/nets/binding.h"
 #include "osteon/nets/graph.h"
+#include "osteon/nets/neuroskinning.h"
 #include "osteon/nets/rignet.h"
 #include "osteon/nets/tree.h"
 #include "osteon/nets/voting.h"
@@ -51,6 +52,11 @@ class DryRun {
   }
   Tensor rows(const Tensor& x, const Index&) { return x; }
   Tensor max_by(const Tensor& x, const Index&) { return x; }
+  Tensor mean_of(const Tensor& x, const Index&, const Index&) { return x; }
+  Tensor attend(const Tensor& x, const Index&, const Index&, [[maybe_unused]] int heads) {
+    assert(x.width % heads == 0);
+    return x;
+  }
 
  private:
   void note(const Path& path, std::vector<std::int64_t> shape) {
@@ -61,13 +67,14 @@ class DryRun {
 
 namespace rignet {
 
-enum class Network { joints, attention, votes, bones, root, tree, skin, bind };
-constexpr std::array kNetworks{Network::joints, Network::attention, Network::votes, Network::bones,
-                               Network::root,   Network::tree,      Network::skin,  Network::bind};
+enum class Network { joints, attention, votes, bones, root, tree, skin, bind, neuroskinning, neuroskinning_2019 };
+constexpr std::array kNetworks{Network::joints, Network::attention, Network::votes, Network::bones,         Network::root,
+                               Network::tree,   Network::skin,      Network::bind,  Network::neuroskinning, Network::neuroskinning_2019};
 
 // What the networks are called in files and commands.
 constexpr const char* name_of(Network network) {
-  constexpr std::array<const char*, kNetworks.size()> names{"joints", "attention", "votes", "bones", "root", "tree", "skin", "bind"};
+  constexpr std::array<const char*, kNetworks.size()> names{"joints", "attention", "votes", "bones",         "root",
+                                                            "tree",   "skin",      "bind",  "neuroskinning", "neuroskinning_2019"};
   return names[static_cast<std::size_t>(network)];
 }
 
@@ -100,6 +107,16 @@ inline std::map<std::string, std::vector<std::int64_t>> parameter_shapes(Network
     case Network::bind:
       bind_net(b, mesh, {{bind_features}, {}, {}, {}, {}, {}});
       break;
+    case Network::neuroskinning:
+    case Network::neuroskinning_2019: {
+      const Neuro<DryRun> neuro{
+          {neuro_vertex_features + neuro_slots}, {{neuro_choice_features}, {}, {}, {}, {}, {}}, {neuro_joint_features + neuro_kinds}, {}};
+      if (network == Network::neuroskinning)
+        neuroskinning::joint_choice_net(b, mesh, neuro);
+      else
+        neuroskinning::slot_net(b, mesh, neuro);
+      break;
+    }
   }
   return std::move(b.parameters);
 }

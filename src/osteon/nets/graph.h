@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <numeric>
@@ -154,6 +155,34 @@ struct TreeArrays {
   }
 };
 
+// What the NeuroSkinning networks read beside the mesh (skin/neuro_features.h).
+constexpr int neuro_slots = 256;                                 // of the super skeleton
+constexpr int neuro_kinds = 160;                                 // of its joints, left and right alike
+constexpr int neuro_vertex_features = 6;                         // position, normal; then a distance for each slot
+constexpr int neuro_choice_features = 26;                        // of a vertex and a joint near it
+constexpr int neuro_joint_features = 16;                         // of a joint in its skeleton; then one for each kind
+constexpr std::array<std::size_t, 3> neuro_pooling{16, 24, 64};  // vertices, the vertex itself among them (the paper's J)
+struct NeuroArrays {
+  std::vector<float> features;        // (V, neuro_vertex_features + neuro_slots); the paper's network alone
+  BindArrays choices;                 // with neuro_choice_features; its "bones" are joints
+  std::vector<float> joints;          // (B, neuro_joint_features + neuro_kinds), a row for each of these that some vertex may choose
+  std::array<EdgeArrays, 3> nearest;  // the neuro_pooling vertices nearest along the surface
+
+  // Of the next mesh, whose first vertex is `first`: the vertices near each, nearest first, itself not among them.
+  void add_nearest(std::span<const std::uint32_t> mesh_offsets, std::span<const std::uint32_t> members, std::int32_t first) {
+    for (std::size_t level = 0; level < nearest.size(); ++level) {
+      std::vector<std::uint32_t> offsets{0}, kept;
+      for (std::size_t v = 0; v + 1 < mesh_offsets.size(); ++v) {
+        const auto own = members.subspan(mesh_offsets[v], mesh_offsets[v + 1] - mesh_offsets[v]);
+        const auto near = own.first(std::min(own.size(), neuro_pooling[level] - 1));
+        kept.insert(kept.end(), near.begin(), near.end());
+        offsets.push_back(static_cast<std::uint32_t>(kept.size()));
+      }
+      nearest[level].add(offsets, kept, first);
+    }
+  }
+};
+
 // The inputs of all networks; what a network does not use may be empty.
 struct NetworkInputs {
   MeshArrays mesh;
@@ -163,6 +192,7 @@ struct NetworkInputs {
   VoteArrays votes;
   BindArrays choices;
   TreeArrays tree;
+  NeuroArrays neuro;
 };
 
 template <class B>
@@ -199,6 +229,14 @@ struct BindChoices {
   typename B::Index offsets;    // (V+1)
   typename B::Index vertex_of;  // (C)
   typename B::Index by_bone, bone_offsets, bone_of;
+};
+
+template <class B>
+struct Neuro {
+  typename B::Tensor features;
+  BindChoices<B> choices;
+  typename B::Tensor joints;
+  std::array<Edges<B>, 3> nearest;
 };
 
 template <class B>
@@ -251,6 +289,19 @@ BindChoices<B> on_backend(B& b, const BindArrays& choices) {
           b.index(choices.by_bone),
           b.index(choices.bone_offsets),
           b.index(choices.bone_of)};
+}
+
+// Parts that a network does not read may be empty.
+template <Ops B>
+Neuro<B> on_backend(B& b, const NeuroArrays& neuro) {
+  const auto rows = [](const std::vector<float>& values, int columns) { return static_cast<int>(values.size()) / columns; };
+  constexpr int of_vertex = neuro_vertex_features + neuro_slots, of_joint = neuro_joint_features + neuro_kinds;
+  const BindArrays& choices = neuro.choices;
+  return {b.tensor(neuro.features, rows(neuro.features, of_vertex), of_vertex),
+          {b.tensor(choices.features, rows(choices.features, neuro_choice_features), neuro_choice_features), b.index(choices.offsets),
+           b.index(choices.vertex_of), b.index(choices.by_bone), b.index(choices.bone_offsets), b.index(choices.bone_of)},
+          b.tensor(neuro.joints, rows(neuro.joints, of_joint), of_joint),
+          {on_backend(b, neuro.nearest[0]), on_backend(b, neuro.nearest[1]), on_backend(b, neuro.nearest[2])}};
 }
 
 template <Ops B>

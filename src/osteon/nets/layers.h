@@ -7,7 +7,8 @@
 #include "osteon/nets/ops.h"
 
 // The building blocks of the graph networks. Each is plain Ops; a backend that has a member of the same name and arguments (after the
-// backend itself) is asked instead: linear_of, mlp, edge_conv. Such a member must compute the same function of the same parameters.
+// backend itself) is asked instead: linear_of, mlp, edge_conv, relu_norm. Such a member must compute the same function of the same
+// parameters.
 namespace osteon::nets {
 
 // Directed edges, sorted by receiver; every vertex receives from itself too.
@@ -51,6 +52,17 @@ typename B::Tensor linear(B& b, const Path& path, const Input<B>& input, int wid
     return b.linear_of(path, input, width);
   else
     return b.linear(path, materialized(b, input), width);
+}
+
+// ReLU, then the normalisation at `path`.
+template <Ops B>
+typename B::Tensor relu_norm(B& b, const Path& path, const typename B::Tensor& x) {
+  if constexpr (requires { b.relu_norm(path, x); }) {
+    return b.relu_norm(path, x);
+  } else {
+    const auto positive = b.relu(x);
+    return b.batch_norm(path, positive);
+  }
 }
 
 // For each width: Linear, ReLU, BatchNorm. The normalisation comes last in every step, also in the last (facts of the released code; the

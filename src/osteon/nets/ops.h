@@ -37,6 +37,9 @@ constexpr double norm_epsilon = 1e-3;
 // concat      the columns of all, side by side
 // rows        y[k] = x[index[k]]
 // max_by      y[s] = max of the rows offsets[s] .. offsets[s+1]-1 of x, column by column; every segment has a row
+// mean_of     y[v] = mean of the rows sources[offsets[v]] .. sources[offsets[v+1]-1] of x; every segment has a row
+// attend      the same sum weighted, in each of `heads` equal blocks of the columns by itself: with the softmax, over the segment, of the
+//             dot products x[v] . x[sources[e]]. As many segments as rows
 // A backend may have faster exact members for composites: see layers.h.
 template <class B>
 concept Ops = requires(B b, const Path& path, const typename B::Tensor& x, const typename B::Index& index, int n,
@@ -51,6 +54,8 @@ concept Ops = requires(B b, const Path& path, const typename B::Tensor& x, const
   { b.concat(several) } -> std::same_as<typename B::Tensor>;
   { b.rows(x, index) } -> std::same_as<typename B::Tensor>;
   { b.max_by(x, index) } -> std::same_as<typename B::Tensor>;
+  { b.mean_of(x, index, index) } -> std::same_as<typename B::Tensor>;    // x, offsets, sources
+  { b.attend(x, index, index, n) } -> std::same_as<typename B::Tensor>;  // x, offsets, sources, heads
 };
 
 }  // namespace osteon::nets

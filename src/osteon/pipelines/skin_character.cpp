@@ -3,21 +3,30 @@
 
 #include "osteon/base/error.h"
 #include "osteon/pipelines/mirrored_skin.h"
+#include "osteon/pipelines/neuroskinning.h"
 #include "osteon/pipelines/rignet.h"
 #include "osteon/pipelines/skin_quality.h"
 
 namespace osteon::pipelines {
 namespace {
 
-skin::Binding by_networks(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
+skin::Binding by_rignet(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
   RignetOptions rignet;
   rignet.skeleton = skeleton;
   rignet.skin.max_influences = options.bind.max_influences;
   RignetResult result = rig_character(mesh, *options.rignet, rignet);
-  skin::Binding out;
-  out.weights = std::move(result.weights);
-  out.notes = std::move(result.report.warnings);
-  out.repairs = std::move(result.report.repairs);
+  return {std::move(result.weights), {}, 0, std::move(result.report.warnings), std::move(result.report.repairs)};
+}
+
+skin::Binding by_neuroskinning(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
+  NeuroskinningOptions neuro;
+  neuro.max_influences = options.bind.max_influences;
+  NeuroskinningResult result = neuroskinning_weights(mesh, skeleton, *options.neuroskinning, neuro);
+  return {std::move(result.weights), {}, 0, std::move(result.warnings), std::move(result.repairs)};
+}
+
+skin::Binding by_networks(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
+  skin::Binding out = options.rignet ? by_rignet(mesh, skeleton, options) : by_neuroskinning(mesh, skeleton, options);
   if (!options.bind.locked.empty())
     out.weights = skin::with_locked(out.weights, options.bind.before.value(), options.bind.locked, options.bind.max_influences);
   return out;
@@ -26,7 +35,8 @@ skin::Binding by_networks(const TriangleMesh& mesh, const Skeleton& skeleton, co
 }  // namespace
 
 skin::Binding skin_character(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
-  skin::Binding out = options.rignet ? by_networks(mesh, skeleton, options) : skin::bind(mesh, skeleton, options.bind);
+  skin::Binding out =
+      options.rignet || options.neuroskinning ? by_networks(mesh, skeleton, options) : skin::bind(mesh, skeleton, options.bind);
   if (!options.mirror) return out;
   const auto mirror = mirror_map(mesh, skeleton);
   if (!mirror) throw Error("mirror: the mesh or the skeleton is not its own mirror image; expected a partner for every vertex and joint");

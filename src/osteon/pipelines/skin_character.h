@@ -5,18 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "osteon/infer/neuroskinning.h"
 #include "osteon/infer/rignet.h"
 #include "osteon/skin/bind.h"
 
 namespace osteon::pipelines {
 
 struct SkinCharacterOptions {
-  skin::BindOptions bind;                  // of the geometric methods; influences, pruning and locked joints of all
-  const infer::RignetModels* rignet = {};  // the networks bind, and `bind.method` is not read; may be null
-  bool mirror = false;                     // make the two halves of a symmetric character equal, bit by bit
+  skin::BindOptions bind;                               // of the geometric methods; influences, pruning and locked joints of all
+  const infer::RignetModels* rignet = {};               // the networks bind, and `bind.method` is not read; may be null
+  const infer::NeuroskinningModel* neuroskinning = {};  // the same
+  bool mirror = false;                                  // make the two halves of a symmetric character equal, bit by bit
 };
 
-// Skin weights for a given skeleton, which is not touched: by geometry or by RigNet's networks.
+// Skin weights for a given skeleton, which is not touched: by geometry, by RigNet's networks or by NeuroSkinning's.
 // Throws Error where the mesh cannot be bound, and for `mirror` where mesh or skeleton are not symmetric.
 // Pre: validate(mesh) and validate(skeleton) hold, in one space.
 skin::Binding skin_character(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options = {});

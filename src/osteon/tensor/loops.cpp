@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <vector>
 
 namespace osteon::tensor::loops {
 namespace {
@@ -67,6 +69,40 @@ Tensor max_by(const Tensor& x, std::span<const std::int32_t> offsets) {
     for (std::int32_t r = offsets[s] + 1; r < offsets[s + 1]; ++r) best = std::max(best, x.row(static_cast<std::size_t>(r))[c]);
     return best;
   });
+}
+
+Tensor mean_of(const Tensor& x, std::span<const std::int32_t> offsets, std::span<const std::int32_t> sources) {
+  return filled(offsets.size() - 1, x.columns(), [&](std::size_t v, std::size_t c) {
+    double sum = 0;
+    for (std::int32_t e = offsets[v]; e < offsets[v + 1]; ++e)
+      sum += static_cast<double>(x.row(static_cast<std::size_t>(sources[static_cast<std::size_t>(e)]))[c]);
+    return static_cast<float>(sum / (offsets[v + 1] - offsets[v]));
+  });
+}
+
+Tensor attend(const Tensor& x, std::span<const std::int32_t> offsets, std::span<const std::int32_t> sources, std::size_t heads) {
+  assert(offsets.size() == x.rows() + 1 && x.columns() % heads == 0);
+  Tensor out(x.rows(), x.columns());
+  const std::size_t width = x.columns() / heads;
+  for (std::size_t v = 0; v < x.rows(); ++v) {
+    const auto first = static_cast<std::size_t>(offsets[v]), last = static_cast<std::size_t>(offsets[v + 1]);
+    const auto source = [&](std::size_t e) { return x.row(static_cast<std::size_t>(sources[e])); };
+    for (std::size_t begin = 0; begin < x.columns(); begin += width) {
+      std::vector<double> scores(last - first, 0.0);
+      for (std::size_t e = first; e < last; ++e)
+        for (std::size_t c = begin; c < begin + width; ++c)
+          scores[e - first] += static_cast<double>(x.row(v)[c]) * static_cast<double>(source(e)[c]);
+      const double largest = *std::ranges::max_element(scores);
+      double total = 0.0;
+      for (double& score : scores) total += score = std::exp(score - largest);
+      for (std::size_t c = begin; c < begin + width; ++c) {
+        double sum = 0.0;
+        for (std::size_t e = first; e < last; ++e) sum += scores[e - first] * static_cast<double>(source(e)[c]);
+        out.row(v)[c] = static_cast<float>(sum / total);
+      }
+    }
+  }
+  return out;
 }
 
 }  // namespace osteon::tensor::loops

@@ -17,4 +17,10 @@ Tensor concat(std::span<const Tensor> parts);                           // colum
 Tensor rows(const Tensor& x, std::span<const std::int32_t> picked);     // out[k] = x[picked[k]]
 Tensor max_by(const Tensor& x, std::span<const std::int32_t> offsets);  // out[s] = max of rows offsets[s] .. offsets[s+1]-1, at least one
 
+// out[v] = mean of the rows sources[offsets[v]] .. sources[offsets[v+1]-1] of x, at least one.
+Tensor mean_of(const Tensor& x, std::span<const std::int32_t> offsets, std::span<const std::int32_t> sources);
+
+// In each of `heads` equal blocks of the columns: out[v] = sum over the same rows u of a_u x[u], a = softmax of x[v] . x[u] over them.
+Tensor attend(const Tensor& x, std::span<const std::int32_t> offsets, std::span<const std::int32_t> sources, std::size_t heads);
+
 }  // namespace osteon::tensor::loops

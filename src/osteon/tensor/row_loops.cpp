@@ -77,4 +77,45 @@ OSTEON_EVERY_CPU void add_gathered(float* x, std::size_t width, const float* add
   }
 }
 
+OSTEON_EVERY_CPU void mean_of_rows(const float* x, std::size_t width, std::span<const std::int32_t> picked, float* __restrict out) {
+  for (std::size_t c = 0; c < width; ++c) out[c] = 0.0f;
+  for (const std::int32_t row : picked) {
+    const float* __restrict from = x + static_cast<std::size_t>(row) * width;
+    for (std::size_t c = 0; c < width; ++c) out[c] += from[c];
+  }
+  const float share = 1.0f / static_cast<float>(picked.size());
+  for (std::size_t c = 0; c < width; ++c) out[c] *= share;
+}
+
+OSTEON_EVERY_CPU void head_products(const float* __restrict query, const float* x, std::size_t width, std::span<const std::int32_t> picked,
+                                    std::size_t heads, float* __restrict scores) {
+  constexpr std::size_t lanes = 16;  // fixed, so that every instruction set adds up in one order
+  const std::size_t block = width / heads;
+  for (const std::int32_t row : picked) {
+    for (std::size_t h = 0; h < heads; ++h) {
+      const float* __restrict p = query + h * block;
+      const float* __restrict q = x + static_cast<std::size_t>(row) * width + h * block;
+      float sums[lanes] = {};
+      for (std::size_t c = 0; c < block; c += lanes)
+        for (std::size_t i = 0; i < lanes; ++i) sums[i] += p[c + i] * q[c + i];
+      for (std::size_t half = lanes / 2; half > 0; half /= 2)
+        for (std::size_t i = 0; i < half; ++i) sums[i] += sums[i + half];
+      *scores++ = sums[0];
+    }
+  }
+}
+
+OSTEON_EVERY_CPU void sum_of_heads(const float* x, std::size_t width, std::span<const std::int32_t> picked, std::size_t heads,
+                                   const float* __restrict weights, float* __restrict out) {
+  const std::size_t block = width / heads;
+  for (std::size_t c = 0; c < width; ++c) out[c] = 0.0f;
+  for (const std::int32_t row : picked)
+    for (std::size_t h = 0; h < heads; ++h) {
+      const float weight = *weights++;
+      const float* __restrict from = x + static_cast<std::size_t>(row) * width + h * block;
+      float* __restrict to = out + h * block;
+      for (std::size_t c = 0; c < block; ++c) to[c] += weight * from[c];
+    }
+}
+
 }  // namespace osteon::tensor

@@ -31,4 +31,15 @@ enum class Activation { none, relu };
 // x[r] += addend[which[r]], then the activation; dense rows.
 void add_gathered(float* x, std::size_t width, const float* addend, std::span<const std::int32_t> which, Activation activation);
 
+// out = mean of the rows of x that `picked` names. Pre: at least one.
+void mean_of_rows(const float* x, std::size_t width, std::span<const std::int32_t> picked, float* out);
+
+// scores[i * heads + h] = query . x[picked[i]] in block h of `heads` equal blocks of the columns. Pre: blocks of a multiple of 16.
+void head_products(const float* query, const float* x, std::size_t width, std::span<const std::int32_t> picked, std::size_t heads,
+                   float* scores);
+
+// out = sum over i of x[picked[i]], block h of the columns times weights[i * heads + h].
+void sum_of_heads(const float* x, std::size_t width, std::span<const std::int32_t> picked, std::size_t heads, const float* weights,
+                  float* out);
+
 }  // namespace osteon::tensor

@@ -33,6 +33,7 @@ nets::NetworkInputs copied(const infer::NetworkInput& input) {
   if (input.choices) out.choices = *input.choices;
   if (input.votes) out.votes = *input.votes;
   if (input.tree) out.tree = *input.tree;
+  if (input.neuro) out.neuro = *input.neuro;
   return out;
 }
 

@@ -224,7 +224,8 @@ struct EdgeLayer : torch::autograd::Function<EdgeLayer> {
 Tensor linear_blocks(const std::vector<Tensor>& inputs, const std::vector<Tensor>& weights, const Tensor& start, const Tensor& index) {
   std::vector<Tensor> list = inputs;
   list.insert(list.end(), weights.begin(), weights.end());
-  return LinearBlocks::apply(at::TensorList(list), start, index.defined() ? index : torch::empty({0}, at::kInt));  // an op needs all its inputs
+  return LinearBlocks::apply(at::TensorList(list), start,
+                             index.defined() ? index : torch::empty({0}, at::kInt));  // an op needs all its inputs
 }
 
 Tensor picked_rows(const Tensor& x, const Tensor& index) { return PickedRows::apply(x, index); }
@@ -271,7 +272,7 @@ Tensor FusedOps::mlp(const nets::Path& path, const nets::Input<FusedOps>& input,
   nets::Input<FusedOps> x = input;
   for (const int width : widths) {
     const nets::Path here = path / step++;
-    x = {relu_norm(linear_of(here / "linear", x, width), norm(here / "norm"))};
+    x = {relu_norm(here / "norm", linear_of(here / "linear", x, width))};
   }
   return x.front().values;
 }

@@ -13,6 +13,9 @@ torch::Tensor linear_blocks(const std::vector<torch::Tensor>& inputs, const std:
 torch::Tensor picked_rows(const torch::Tensor& x, const torch::Tensor& index);
 torch::Tensor segment_max(const torch::Tensor& x, const torch::Tensor& offsets);
 
+torch::Tensor segment_mean(const torch::Tensor& x, const torch::Tensor& offsets, const torch::Tensor& sources);
+torch::Tensor graph_attention(const torch::Tensor& x, const torch::Tensor& offsets, const torch::Tensor& sources, std::int64_t heads);
+
 struct FusedNorm {
   NormParameters parameters;
   Mode mode;
@@ -35,6 +38,11 @@ class FusedOps : public TorchOps {
   Tensor linear(const nets::Path& path, const Tensor& x, int) { return linear_blocks({x}, {at(path / "weight")}, at(path / "bias")); }
   Tensor rows(const Tensor& x, const Index& index) { return picked_rows(x, index); }
   Tensor max_by(const Tensor& x, const Index& offsets) { return segment_max(x, offsets); }
+  Tensor mean_of(const Tensor& x, const Index& offsets, const Index& sources) { return segment_mean(x, offsets, sources); }
+  Tensor attend(const Tensor& x, const Index& offsets, const Index& sources, int heads) {
+    return graph_attention(x, offsets, sources, heads);
+  }
+  Tensor relu_norm(const nets::Path& path, const Tensor& x) { return train::relu_norm(x, norm(path)); }
   Tensor linear_of(const nets::Path& path, const nets::Input<FusedOps>& input, int width);
   Tensor mlp(const nets::Path& path, const nets::Input<FusedOps>& input, std::initializer_list<int> widths);
   Tensor edge_conv(const nets::Path& path, const Tensor& x, const nets::Edges<FusedOps>& edges, int width);

@@ -81,4 +81,8 @@ at::Tensor skin_loss(const at::Tensor& logits, const at::Tensor& weights, const 
   return (each * share).sum() / (share.sum() + 1e-8);
 }
 
+at::Tensor skin_difference(const at::Tensor& logits, const at::Tensor& weights, const at::Tensor& share) {
+  return ((logits.softmax(1) - weights * share.unsqueeze(1)).abs().sum(1) + (1.0 - share)).mean();
+}
+
 }  // namespace osteon::train

@@ -42,4 +42,8 @@ at::Tensor tree_loss(const at::Tensor& logits, const std::vector<std::int32_t>& 
 // its weight that the five bones can carry. Differs: the reference drops vertices whose share is not exactly 1, 7 % by rounding alone.
 at::Tensor skin_loss(const at::Tensor& logits, const at::Tensor& weights, const at::Tensor& share);
 
+// Mean over the vertices of the L1 distance between softmax(logits) and the reference's weights. Its weight on other bones (1 - share) is
+// lost whatever the network says: it counts in full.
+at::Tensor skin_difference(const at::Tensor& logits, const at::Tensor& weights, const at::Tensor& share);
+
 }  // namespace osteon::train

@@ -2,6 +2,7 @@
 #include "osteon/train/networks.h"
 
 #include "osteon/nets/binding.h"
+#include "osteon/nets/neuroskinning.h"
 #include "osteon/nets/rignet.h"
 #include "osteon/nets/tree.h"
 #include "osteon/nets/voting.h"
@@ -36,6 +37,10 @@ at::Tensor run(B& b, Network network, const NetworkInputs& inputs) {
       return nets::rignet::skin_net(b, mesh, b.tensor(inputs.skin_features, inputs.mesh.batch.rows(), nets::rignet::skin_inputs));
     case Network::bind:
       return nets::bind_net(b, mesh, nets::on_backend(b, inputs.choices));
+    case Network::neuroskinning:
+      return nets::neuroskinning::joint_choice_net(b, mesh, nets::on_backend(b, inputs.neuro));
+    case Network::neuroskinning_2019:
+      return nets::neuroskinning::slot_net(b, mesh, nets::on_backend(b, inputs.neuro));
   }
   throw Error("unknown network");
 }

@@ -165,6 +165,22 @@ OSTEON_HOT void relu_affine_backward(const float* x, const float* gradient, std:
   }
 }
 
+OSTEON_HOT float dot(const float* __restrict a, const float* __restrict b, std::int64_t width) {
+  constexpr std::int64_t lanes = 16;
+  float sums[lanes] = {}, rest = 0.0f;
+  std::int64_t c = 0;
+  for (; c + lanes <= width; c += lanes)
+    for (std::int64_t i = 0; i < lanes; ++i) sums[i] += a[c + i] * b[c + i];
+  for (; c < width; ++c) rest += a[c] * b[c];
+  for (std::int64_t half = lanes / 2; half > 0; half /= 2)
+    for (std::int64_t i = 0; i < half; ++i) sums[i] += sums[i + half];
+  return sums[0] + rest;
+}
+
+OSTEON_HOT void add_scaled(const float* __restrict x, std::int64_t width, float scale, float* __restrict y) {
+  for (std::int64_t c = 0; c < width; ++c) y[c] += scale * x[c];
+}
+
 OSTEON_HOT void column_sums(const float* x, std::int64_t rows, std::int64_t width, float* sum) {
   for (std::int64_t i = 0; i < rows; ++i, x += width) {
 #pragma GCC ivdep

@@ -85,6 +85,12 @@ struct ReluAffineGradient {
 void relu_affine_backward(const float* x, const float* gradient, std::int64_t rows, std::int64_t width, const ReluAffineGradient& by,
                           float* dx);
 
+// The dot product of two rows.
+float dot(const float* a, const float* b, std::int64_t width);
+
+// y += scale * x
+void add_scaled(const float* x, std::int64_t width, float scale, float* y);
+
 // sum[c] += x over rows
 void column_sums(const float* x, std::int64_t rows, std::int64_t width, float* sum);
 

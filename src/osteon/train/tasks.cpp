@@ -16,6 +16,8 @@ using nets::rignet::name_of;
 using nets::rignet::Network;
 using Figures = std::map<std::string, double>;
 
+const auto kNeuroBones = static_cast<std::int64_t>(skin::BoneChoiceOptions().most);
+
 Network network_of(Task task) {
   switch (task) {
     case Task::attention:
@@ -35,6 +37,10 @@ Network network_of(Task task) {
       return Network::skin;
     case Task::bind:
       return Network::bind;
+    case Task::neuroskinning:
+      return Network::neuroskinning;
+    case Task::neuroskinning_2019:
+      return Network::neuroskinning_2019;
   }
   throw Error("unknown task");
 }
@@ -44,7 +50,8 @@ Network network_of(Task task) {
 void quieten_global_features(Network network, Parameters& parameters) {
   if (network == Network::bones || network == Network::root) return;  // 64 and 128 channels beside as many others: no trouble
   if (network == Network::bind || network == Network::votes || network == Network::tree) return;  // not more than 256 beside 455
-  const char* last_norm = network == Network::skin ? "global.1.norm" : "global.0.norm";
+  if (network == Network::neuroskinning) return;                                                  // 128 beside 832
+  const char* last_norm = network == Network::skin || network == Network::neuroskinning_2019 ? "global.1.norm" : "global.0.norm";
   parameters.at(std::string(last_norm) + ".weight").fill_(0.2);
   parameters.at(std::string(last_norm) + ".bias").fill_(-0.7);
 }
@@ -120,22 +127,31 @@ Tensor collapse_loss(Model& model, const dataset::Batch& batch, const TaskOption
   return loss + options.attention_weight * attention_loss(all.attention, tensor_of(batch.targets.attention, 1, options.run.device));
 }
 
-// One row a vertex, (V,5) or (V,8). The binding network's rows are spread out; where a vertex has fewer bones the softmax finds nothing.
-Tensor skin_logits(Task task, const Tensor& out, const dataset::Batch& batch) {
-  if (task == Task::skin) return out;
-  constexpr std::int64_t width = geometry::kBindBones;
-  const nets::BindArrays& choices = batch.inputs.choices;
+// Rows of vertices and bones (C) spread out to one row a vertex, (V,width); `rest` where a vertex has fewer bones.
+Tensor spread(const Tensor& of_choices, const nets::BindArrays& choices, std::int64_t width, double rest) {
   std::vector<std::int64_t> places;
   for (std::size_t row = 0; row < choices.vertex_of.size(); ++row) {
     const std::int32_t vertex = choices.vertex_of[row];
     places.push_back(vertex * width + static_cast<std::int64_t>(row) - choices.offsets[static_cast<std::size_t>(vertex)]);
   }
-  const Tensor at_places = at::tensor(places, at::kLong).to(out.device());
+  const Tensor at_places = at::tensor(places, at::kLong).to(of_choices.device());
   const auto vertices = static_cast<std::int64_t>(choices.offsets.size()) - 1;
-  return at::full({vertices * width}, -1e4, out.options()).index_copy(0, at_places, out.squeeze(1)).view({vertices, width});
+  return at::full({vertices * width}, rest, of_choices.options()).index_copy(0, at_places, of_choices).view({vertices, width});
 }
 
-Tensor skin_targets(const dataset::Batch& batch, at::Device device) {
+constexpr double kNoBone = -1e4;  // a logit of which the softmax leaves nothing
+
+// One row a vertex, (V,5), (V,8), (V,10) or (V,slots).
+Tensor skin_logits(Task task, const Tensor& out, const dataset::Batch& batch) {
+  if (task == Task::bind) return spread(out.squeeze(1), batch.inputs.choices, geometry::kBindBones, kNoBone);
+  if (task == Task::neuroskinning)
+    return spread(out.squeeze(1) + tensor_of(batch.targets.log_shares, 1, out.device()), batch.inputs.neuro.choices, kNeuroBones, kNoBone);
+  if (task == Task::neuroskinning_2019) return out + tensor_of(batch.targets.slots, nets::neuro_slots, out.device());
+  return out;
+}
+
+Tensor skin_targets(Task task, const dataset::Batch& batch, at::Device device) {
+  if (task == Task::neuroskinning) return spread(tensor_of(batch.targets.skin, 1, device), batch.inputs.neuro.choices, kNeuroBones, 0.0);
   return tensor_of(batch.targets.skin, static_cast<std::int64_t>(batch.targets.skin.size() / batch.targets.skin_share.size()), device);
 }
 
@@ -198,10 +214,8 @@ Figures tree_figures(const Tensor& logits, const dataset::Batch& batch) {
           {"root", of_joint.diagonal().argmax().item<std::int64_t>() == batch.targets.root[0] ? 1.0 : 0.0}};
 }
 
-// The reference's weight on other bones than the five is lost whatever the network says: it counts in full.
 Figures skin_figures(const Tensor& logits, const Tensor& weights, const Tensor& covered) {
-  const Tensor difference = (logits.softmax(1) - weights * covered.unsqueeze(1)).abs().sum(1) + (1.0 - covered);
-  return {{"loss", skin_loss(logits, weights, covered).item<double>()}, {"l1", difference.mean().item<double>()}};
+  return {{"loss", skin_loss(logits, weights, covered).item<double>()}, {"l1", skin_difference(logits, weights, covered).item<double>()}};
 }
 
 Figures figures_of(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options) {
@@ -217,7 +231,7 @@ Figures figures_of(Task task, Model& model, const dataset::Batch& batch, const T
   if (task == Task::bones) return bone_figures(out, tensor_of(batch.targets.connected, 1, device));
   if (task == Task::root) return root_figures(out, batch);
   if (task == Task::tree) return tree_figures(out, batch);
-  return skin_figures(skin_logits(task, out, batch), skin_targets(batch, device), tensor_of(batch.targets.skin_share, 1, device));
+  return skin_figures(skin_logits(task, out, batch), skin_targets(task, batch, device), tensor_of(batch.targets.skin_share, 1, device));
 }
 
 bool has_targets(Task task, const dataset::Example& example) { return !is_about_pairs(task) || example.character.joints() > 1; }
@@ -230,6 +244,8 @@ dataset::Parts parts_of(Task task) {
   if (task == Task::tree) return dataset::Parts::tree;
   if (is_about_pairs(task)) return dataset::Parts::pairs;
   if (task == Task::bind) return dataset::Parts::bind;
+  if (task == Task::neuroskinning) return dataset::Parts::neuro;
+  if (task == Task::neuroskinning_2019) return dataset::Parts::neuro_2019;
   return task == Task::skin ? dataset::Parts::skin : dataset::Parts::joints;
 }
 
@@ -244,7 +260,7 @@ Model fresh_model(Task task, std::uint64_t seed) {
     add(Network::attention);
     model["bandwidth"]["h"] = at::full({1}, 0.04, at::kFloat);
   }
-  if (network_of(task) == Network::joints || network_of(task) == Network::votes)
+  if (network_of(task) == Network::joints || network_of(task) == Network::votes || network_of(task) == Network::neuroskinning)
     for (const char* name : {"out.weight", "out.bias"}) model[name_of(network_of(task))].at(name).zero_();
   return model;
 }
@@ -259,7 +275,10 @@ at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, c
   if (task == Task::bones) return bone_loss(out, tensor_of(batch.targets.connected, 1, device));
   if (task == Task::root) return root_loss(out, batch.inputs.joints.batch.offsets, batch.targets.root);
   if (task == Task::tree) return tree_loss(out, batch.inputs.joints.batch.offsets, batch.targets.parents);
-  return skin_loss(skin_logits(task, out, batch), skin_targets(batch, device), tensor_of(batch.targets.skin_share, 1, device));
+  const Tensor logits = skin_logits(task, out, batch), weights = skin_targets(task, batch, device);
+  const Tensor share = tensor_of(batch.targets.skin_share, 1, device);
+  if (task != Task::neuroskinning) return skin_loss(logits, weights, share);
+  return skin_loss(logits, weights, share) + options.difference_weight * skin_difference(logits, weights, share);
 }
 
 std::map<std::string, double> validate(Task task, Model& model, std::span<const dataset::Example> examples, const TaskOptions& options) {

@@ -22,16 +22,19 @@ enum class Task {
   tree,  // both in one network: every joint's parent
   skin,
   bind,
+  neuroskinning,
+  neuroskinning_2019,
 };
 
 struct TaskOptions {
   RunOptions run;
   dataset::BatchOptions batch;
   int mean_shift_steps = 15;
-  double collapse_weight = 2.0;   // of the trail against chamfer(q, joints): the released code's
-  double attention_weight = 0.1;  // of the attention's own cross-entropy in the combined loss: the code's option
-  double density_weight = 0.05;   // votes: of the density at the joints, against chamfer(q, joints)
-  double density_width = 0.03;    // of its kernel; longest side = 1
+  double collapse_weight = 2.0;    // of the trail against chamfer(q, joints): the released code's
+  double attention_weight = 0.1;   // of the attention's own cross-entropy in the combined loss: the code's option
+  double density_weight = 0.05;    // votes: of the density at the joints, against chamfer(q, joints)
+  double density_width = 0.03;     // of its kernel; longest side = 1
+  double difference_weight = 1.0;  // neuroskinning: of the L1 distance of the weights, against their cross-entropy
 };
 
 // Whether it learns which joints belong together: characters with a single joint have nothing to show.
@@ -40,7 +43,8 @@ bool is_about_pairs(Task task);
 // What the task reads of a character.
 dataset::Parts parts_of(Task task);
 
-// A fresh model with the parts that the task trains; the displacement starts at zero, as in the released code.
+// A fresh model with the parts that the task trains; the displacement starts at zero, as in the released code,
+// and what our NeuroSkinning network adds to the geometric shares.
 Model fresh_model(Task task, std::uint64_t seed);
 
 at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, const TaskOptions& options);
@@ -53,7 +57,7 @@ at::Tensor training_loss(Task task, Model& model, const dataset::Batch& batch, c
 //   bones       loss, accuracy, precision and recall of the pairs with probability over 0.5 (mean of both orders)
 //   root        loss, accuracy
 //   tree        loss, parents (how often the likeliest parent is right), root (how often the likeliest root is)
-//   skin, bind  loss, l1 (mean over vertices of the summed differences to the reference weights)
+//   skin, bind, neuroskinning, neuroskinning_2019  loss, l1 (mean over vertices of the summed differences to the reference weights)
 std::map<std::string, double> validate(Task task, Model& model, std::span<const dataset::Example> examples, const TaskOptions& options);
 
 }  // namespace osteon::train

@@ -43,12 +43,31 @@ class TorchOps {
   Tensor rows(const Tensor& x, const Index& index) { return torch::index_select(x, 0, index); }
   Tensor max_by(const Tensor& x, const Index& offsets) {
     const std::int64_t segments = offsets.size(0) - 1;
-    const Tensor counts = offsets.narrow(0, 1, segments) - offsets.narrow(0, 0, segments);
-    const Tensor segment = torch::repeat_interleave(counts.to(torch::kLong)).unsqueeze(1).expand_as(x);
+    const Tensor segment = torch::repeat_interleave(counts_of(offsets)).unsqueeze(1).expand_as(x);
     return torch::zeros({segments, x.size(1)}, x.options()).scatter_reduce(0, segment, x, "amax", false);
+  }
+  Tensor mean_of(const Tensor& x, const Index& offsets, const Index& sources) {
+    const Tensor counts = counts_of(offsets);
+    const Tensor sums = torch::zeros({counts.size(0), x.size(1)}, x.options())
+                            .index_add(0, torch::repeat_interleave(counts), torch::index_select(x, 0, sources));
+    return sums / counts.unsqueeze(1);
+  }
+  Tensor attend(const Tensor& x, const Index& offsets, const Index& sources, int heads) {
+    const Tensor segment = torch::repeat_interleave(counts_of(offsets));
+    const Tensor blocks = x.view({x.size(0), heads, -1}), source = torch::index_select(blocks, 0, sources);  // (E,heads,width)
+    const Tensor scores = (torch::index_select(blocks, 0, segment) * source).sum(2);
+    const Tensor largest = max_by(scores.detach(), offsets);
+    const Tensor shares = (scores - torch::index_select(largest, 0, segment)).exp();
+    const Tensor totals = torch::zeros({x.size(0), heads}, x.options()).index_add(0, segment, shares);
+    const Tensor sums = torch::zeros_like(blocks).index_add(0, segment, source * shares.unsqueeze(2));
+    return (sums / totals.unsqueeze(2)).view_as(x);
   }
 
  protected:
+  static Tensor counts_of(const Index& offsets) {
+    const std::int64_t segments = offsets.size(0) - 1;
+    return (offsets.narrow(0, 1, segments) - offsets.narrow(0, 0, segments)).to(torch::kLong);
+  }
   // How far the batch's figures are from the running ones, as constants; the running ones move towards the batch's.
   struct Correction {
     Tensor stretch, offset;

@@ -40,6 +40,10 @@ std::string task_name(Task task) {
       return "skin";
     case Task::bind:
       return "bind";
+    case Task::neuroskinning:
+      return "neuroskinning";
+    case Task::neuroskinning_2019:
+      return "neuroskinning_2019";
   }
   return "";
 }

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "osteon/pipelines/neuroskinning.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "osteon/geometry/neighbourhoods.h"
+#include "osteon/infer/rignet.h"
+#include "osteon/pipelines/body_frame.h"
+#include "osteon/rig/coincident_joints.h"
+#include "osteon/skin/neuro_features.h"
+#include "osteon/skin/weight_cleanup.h"
+
+namespace osteon::pipelines {
+namespace {
+
+constexpr float kSamePlace = 1e-3f;  // joints nearer than this are one, as in training; longest side 1
+constexpr float kPoolReach = 0.25f;  // of the vertices that a graph unit pools
+constexpr float kAbsent = -1e4f;
+
+// By names, left is at -x.
+bool is_reversed(const Skeleton& skeleton) {
+  float left = 0.0f;
+  for (JointId j : skeleton.names.ids()) {
+    const skin::Side side = skin::bone_name(skeleton.names[j]).side;
+    if (side != skin::Side::none) left += (side == skin::Side::left ? 1.0f : -1.0f) * skeleton.rest_positions[j].x();
+  }
+  return left < 0.0f;
+}
+
+// The body as the networks read it: its own frame, normalised, one joint in a place.
+struct Body {
+  geometry::WorkingMesh working;
+  geometry::Neighbourhoods ring;
+  nets::MeshArrays graph;
+  std::vector<Vec3f> normals;
+  MergedSkeleton merged;
+
+  const TriangleMesh& mesh() const { return working.mesh; }
+};
+
+Body study(const TriangleMesh& mesh, const Skeleton& skeleton, const NeuroskinningOptions& options) {
+  Body body;
+  Eigen::Matrix3f turn = body_frame(mesh, Up::automatic).turn;
+  if (is_reversed(turned(skeleton, turn))) turn = Eigen::Vector3f(-1.0f, 1.0f, -1.0f).asDiagonal() * turn;
+  body.working = geometry::make_working_mesh(turned(mesh, turn), options.working_mesh);
+  body.ring = geometry::one_ring(body.mesh());
+  const geometry::Neighbourhoods none{std::vector<std::uint32_t>(body.ring.offsets.size(), 0), {}};
+  body.graph = infer::single_mesh(body.mesh().positions.raw(), {body.ring.offsets, body.ring.members}, {none.offsets, none.members});
+  body.normals = vertex_normals(body.mesh()).raw();
+  Skeleton placed = turned(skeleton, turn);
+  for (Vec3f& p : placed.rest_positions) p = body.working.normalization.apply(p);
+  body.merged = merge_coincident_joints(placed, kSamePlace);
+  return body;
+}
+
+// Which joints of the original stand for each joint of the merged skeleton.
+class Owners {
+ public:
+  Owners(const Skeleton& original, const MergedSkeleton& merged) : original_(original), merged_(merged), first_(merged.skeleton.size()) {
+    for (std::size_t j = original.size(); j-- > 0;) first_[merged.from_original[static_cast<JointId>(j)]] = static_cast<JointId>(j);
+  }
+
+  JointId first(JointId joint) const { return first_[joint]; }
+  // Of the joints in one place, such as the roots of fingers, the one whose bone it is: the parent of the joint where the bone ends.
+  JointId of_bone(const geometry::BoneList& bones, std::size_t bone) const {
+    const auto start = static_cast<JointId>(bones.starts[bone]);
+    if (bones.ends[bone] < 0) return first_[start];
+    const auto parent = original_.parents[first_[static_cast<JointId>(bones.ends[bone])]];
+    return parent && merged_.from_original[*parent] == start ? *parent : first_[start];
+  }
+
+ private:
+  const Skeleton& original_;
+  const MergedSkeleton& merged_;
+  PerJoint<JointId> first_;
+};
+
+// Softmax over the joints that each vertex may choose, in the joints of the original, (V,J).
+Matrix joint_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
+                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, const skin::BoneChoiceOptions& options) {
+  const skin::BoneChoices choices = skin::bone_choices(body.mesh(), body.merged.skeleton, options);
+  const skin::ChoiceRows rows =
+      skin::choice_rows(body.mesh().positions.raw(), body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
+  neuro.choices.add(rows.features, rows.offsets, rows.joints);
+  neuro.joints = rows.joint_features;
+  Matrix logits = model(body.graph, neuro);
+  if (!logits.allFinite()) logits.setZero();
+  Matrix out = Matrix::Zero(choices.nearest.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()));
+  for (Eigen::Index v = 0; v < out.rows(); ++v) {
+    const auto first = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v)]);
+    const auto last = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v) + 1]);
+    const auto logit = [&](std::size_t row) { return logits(static_cast<Eigen::Index>(row), 0) + rows.log_shares[row]; };
+    float largest = logit(first), total = 0.0f;
+    for (std::size_t row = first; row < last; ++row) largest = std::max(largest, logit(row));
+    for (std::size_t row = first; row < last; ++row) total += std::exp(logit(row) - largest);
+    for (std::size_t row = first; row < last; ++row) {
+      const auto bone = static_cast<std::size_t>(choices.nearest(v, static_cast<Eigen::Index>(row - first)));
+      out(v, static_cast<Eigen::Index>(index(owners.of_bone(choices.bones, bone)))) += std::exp(logit(row) - largest) / total;
+    }
+  }
+  return out;
+}
+
+// The same by the paper's network: softmax over the slots that the skeleton has.
+Matrix slot_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
+                    const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment) {
+  const Skeleton& skeleton = body.merged.skeleton;
+  neuro.features = skin::slot_rows(body.mesh().positions.raw(), body.normals, skeleton, super, assignment, nets::neuro_slots);
+  Matrix logits = model(body.graph, neuro);
+  if (!logits.allFinite()) logits.setZero();
+  Matrix out = Matrix::Constant(logits.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()), kAbsent);
+  std::vector<bool> taken(super.slots().size(), false);
+  for (JointId j : skeleton.names.ids()) {
+    const std::size_t slot = assignment.slot[j];
+    if (!taken[slot]) out.col(static_cast<Eigen::Index>(index(owners.first(j)))) = logits.col(static_cast<Eigen::Index>(slot));
+    taken[slot] = true;
+  }
+  for (Eigen::Index v = 0; v < out.rows(); ++v) {
+    out.row(v) = (out.row(v).array() - out.row(v).maxCoeff()).exp();
+    out.row(v) /= out.row(v).sum();
+  }
+  return out;
+}
+
+}  // namespace
+
+NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skeleton& skeleton, const infer::NeuroskinningModel& model,
+                                          const NeuroskinningOptions& options) {
+  NeuroskinningResult result;
+  const Body body = study(mesh, skeleton, options);
+  result.repairs = body.working.clean.repairs;
+  const skin::SuperSkeleton super = skin::SuperSkeleton::from_json(model.super_skeleton());
+  const skin::SlotAssignment assignment = super.assign(body.merged.skeleton);
+  nets::NeuroArrays neuro;
+  const auto near = geometry::geodesic_balls(body.mesh(), kPoolReach, nets::neuro_pooling.back() - 1).members;
+  neuro.add_nearest(near.offsets, near.members, 0);
+  const Owners owners(skeleton, body.merged);
+  Matrix weights = model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment)
+                                     : joint_weights(body, owners, model, neuro, super, assignment, options.choices);
+  for (int round = 0; round < options.smooth; ++round) weights = skin::smooth_rows(weights, body.ring);
+  skin::prune_rows(weights, options.prune_share, options.max_influences);
+  skin::fill_empty_rows(weights, body.mesh().positions, body.ring);
+  result.weights = skin::weights_on_original(weights, geometry::carry_back(body.working), options.max_influences);
+  return result;
+}
+
+}  // namespace osteon::pipelines

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "osteon/geometry/working_mesh.h"
+#include "osteon/infer/neuroskinning.h"
+#include "osteon/rig/skeleton.h"
+#include "osteon/rig/skin_weights.h"
+#include "osteon/skin/bone_choices.h"
+
+namespace osteon::pipelines {
+
+struct NeuroskinningOptions {
+  float prune_share = 0.2f;        // weights below this share of a vertex's largest go
+  std::size_t max_influences = 4;  // the paper's kappa
+  int smooth = 0;                  // rounds over the working mesh's one-ring
+  geometry::WorkingMeshOptions working_mesh = {};
+  skin::BoneChoiceOptions choices = {};
+};
+
+struct NeuroskinningResult {
+  SkinWeights weights;  // one row per vertex of the mesh that was given, in its order
+  std::vector<std::string> warnings, repairs;
+};
+
+// Liu and others, NeuroSkinning, 2019: skin weights for a skeleton that is given. mesh -> its own frame, the left side by the joints' names
+// at +x -> working mesh -> joints onto the slots of the super skeleton -> network -> weights on the mesh that was given. Joints at one
+// place count as one, whose weights go to the one whose bone is nearest. The same for any order of vertices and any number of threads.
+// Throws Error for a mesh without surface. Pre: validate(mesh) and validate(skeleton) hold, in one space.
+NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skeleton& skeleton, const infer::NeuroskinningModel& model,
+                                          const NeuroskinningOptions& options = {});
+
+}  // namespace osteon::pipelines

@@ -13,7 +13,7 @@
 namespace osteon::pipelines {
 
 struct NeuroskinningOptions {
-  float prune_share = 0.2f;        // weights below this share of a vertex's largest go
+  float prune_share = 0.15f;       // weights below this share of a vertex's largest go
   std::size_t max_influences = 4;  // the paper's kappa
   int smooth = 0;                  // rounds over the working mesh's one-ring
   geometry::WorkingMeshOptions working_mesh = {};

@@ -51,10 +51,13 @@ TEST_P(TorchNetworks, both_engines_of_the_trainer_equal_the_product) {
   const Safetensors weights = test::random_weights(nets::rignet::parameter_shapes(GetParam()), 42);
   infer::Onednn onednn(infer::Parameters(weights, nets::rignet::parameter_shapes(GetParam()), "seeded"));
   const Matrix product = infer::run(GetParam(), onednn, input.view());
+  // A softmax of dot products that nobody scales multiplies rounding by the size of its scores.
+  const bool attends = GetParam() == Network::neuroskinning || GetParam() == Network::neuroskinning_2019;
+  const float tolerance = attends ? 5e-5f : 1e-5f;
   for (const train::Engine engine : {train::Engine::plain, train::Engine::fused}) {
     train::Parameters parameters = on_torch(weights);
     const Matrix trained = matrix_of(train::run_network(GetParam(), parameters, input, {train::Mode::use, engine}));
-    EXPECT_LE(test::relative_difference(product, trained), 1e-5f) << (engine == train::Engine::plain ? "plain" : "fused");
+    EXPECT_LE(test::relative_difference(product, trained), tolerance) << (engine == train::Engine::plain ? "plain" : "fused");
   }
 }
 

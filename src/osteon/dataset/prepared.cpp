@@ -91,7 +91,8 @@ void derive_from_shape(PreparedCharacter& character, Parts parts) {
   }
   const std::vector<Vec3f>& joints = character.skeleton.rest_positions.raw();
   if (parts == Parts::joints) character.attention = geometry::attention_labels(character.mesh, joints, parent_indices(character.skeleton));
-  if (parts == Parts::pairs || parts == Parts::skin || parts == Parts::bind) character.voxels = geometry::voxelize(character.mesh);
+  const bool reads_voxels = parts == Parts::pairs || parts == Parts::tree || parts == Parts::skin || parts == Parts::bind;
+  if (reads_voxels) character.voxels = geometry::voxelize(character.mesh);
   if (parts == Parts::skin || parts == Parts::bind) derive_nearest_bones(character, static_cast<int>(character.nearest_bones.cols()));
 }
 

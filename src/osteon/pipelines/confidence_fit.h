@@ -8,9 +8,9 @@ namespace osteon::pipelines {
 
 constexpr Logistic<kJointEvidence.size()> kJointFit{0.68913f, {0.097546f, 2.8816f, 0.34003f}};
 
-constexpr Logistic<kCharacterEvidence.size()> kCharacterFit{0.47221f, {7.5413f, -1.8280f, 1.2792f}};
+constexpr Logistic<kCharacterEvidence.size()> kCharacterFit{-5.3705f, {7.7094f, 3.5831f, 0.73447f}};
 
 // Below this confidence a rig should not be used unseen.
-constexpr float kLowConfidence = 0.028f;
+constexpr float kLowConfidence = 0.031f;
 
 }  // namespace osteon::pipelines

@@ -16,6 +16,7 @@
 #include "osteon/metrics/line_plot.h"
 #include "osteon/pipelines/skin_character.h"
 #include "osteon/synth/character.h"
+#include "skin/cut_bones.h"
 
 namespace osteon {
 namespace {
@@ -28,24 +29,6 @@ constexpr std::array kParts{1, 2, 4, 8};  // that every bone is cut into
 constexpr int kRuns = 3;
 
 Rig biped(int cells) { return synth::make_character(synth::Kind::Biped, 3, {cells, synth::Finish::Smooth}); }
-
-// The same tree with every bone cut into so many.
-Skeleton cut(const Skeleton& skeleton, int parts) {
-  Skeleton out;
-  PerJoint<JointId> place(skeleton.size());
-  for (JointId j : skeleton.names.ids()) {
-    const auto& parent = skeleton.parents[j];
-    std::optional<JointId> above;
-    if (parent) above = place[*parent];
-    for (int k = 1; parent && k < parts; ++k) {
-      const float t = static_cast<float>(k) / static_cast<float>(parts);
-      const Vec3f p = (1.0f - t) * skeleton.rest_positions[*parent] + t * skeleton.rest_positions[j];
-      above = out.add(fmt::format("{}_{}", skeleton.names[j], k), above, p, skeleton.rest_orientations[*parent]);
-    }
-    place[j] = out.add(skeleton.names[j], above, skeleton.rest_positions[j], skeleton.rest_orientations[j]);
-  }
-  return out;
-}
 
 struct NamedMethod {
   explicit NamedMethod(const char* n) : name(n) {}
@@ -106,7 +89,7 @@ void run(const fs::path& folder) {
   }
   const Rig plain = biped(kPlainCells);
   for (const int parts : kParts) {
-    const Skeleton skeleton = cut(plain.skeleton, parts);
+    const Skeleton skeleton = bench::with_bones_cut(plain.skeleton, parts);
     measure(plain, skeleton, methods, static_cast<double>(skeleton.size()), by_bones);
   }
   metrics::save_svg(folder / "skin_vertices.svg", {"osteon skin, two cores", {"thousand vertices", 0.0}, {"seconds", 0.0}, lines});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
+#include "cut_bones.h"
 #include "osteon/pipelines/neuroskinning.h"
 #include "osteon/skin/bind.h"
 #include "osteon/synth/character.h"
@@ -11,24 +12,6 @@ namespace {
 
 Rig biped(std::int64_t cells) { return synth::make_character(synth::Kind::Biped, 3, {static_cast<int>(cells), synth::Finish::Smooth}); }
 
-// The same tree with every bone cut into so many.
-Skeleton subdivided(const Skeleton& skeleton, int parts) {
-  Skeleton out;
-  PerJoint<JointId> place(skeleton.size());
-  for (JointId j : skeleton.names.ids()) {
-    std::optional<JointId> above;
-    const auto& parent = skeleton.parents[j];
-    if (parent) above = place[*parent];
-    for (int k = 1; parent && k < parts; ++k) {
-      const float t = static_cast<float>(k) / static_cast<float>(parts);
-      const Vec3f p = (1.0f - t) * skeleton.rest_positions[*parent] + t * skeleton.rest_positions[j];
-      above = out.add(skeleton.names[j] + "_" + std::to_string(k), above, p, skeleton.rest_orientations[*parent]);
-    }
-    place[j] = out.add(skeleton.names[j], above, skeleton.rest_positions[j], skeleton.rest_orientations[j]);
-  }
-  return out;
-}
-
 void by_vertices(benchmark::State& state) {
   const Rig rig = biped(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(bind(rig.mesh, rig.skeleton));
@@ -36,7 +19,7 @@ void by_vertices(benchmark::State& state) {
 }
 void by_bones(benchmark::State& state) {
   const Rig rig = biped(96);
-  const Skeleton skeleton = subdivided(rig.skeleton, static_cast<int>(state.range(0)));
+  const Skeleton skeleton = bench::with_bones_cut(rig.skeleton, static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(bind(rig.mesh, skeleton));
   state.counters["joints"] = static_cast<double>(skeleton.size());
 }
@@ -51,7 +34,7 @@ void by_method(benchmark::State& state) {
 void by_neuroskinning(benchmark::State& state) {
   const infer::NeuroskinningModel model = infer::NeuroskinningModel::load();
   const Rig rig = biped(72);
-  const Skeleton skeleton = subdivided(rig.skeleton, static_cast<int>(state.range(0)));
+  const Skeleton skeleton = bench::with_bones_cut(rig.skeleton, static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(pipelines::neuroskinning_weights(rig.mesh, skeleton, model));
   state.counters["vertices"] = static_cast<double>(rig.mesh.positions.size());
   state.counters["joints"] = static_cast<double>(skeleton.size());

@@ -36,13 +36,8 @@ infer::NeuroskinningModel untrained(Network network, LastLayer last = LastLayer:
 Rig biped() { return synth::make_character(synth::Kind::Biped, 3, {64, synth::Finish::Smooth}); }
 
 void expect_exact(const SkinWeights& weights, const TriangleMesh& mesh, const Skeleton& skeleton) {
-  validate(weights, mesh.positions.size(), skeleton.size());
-  for (VertexId v : mesh.positions.ids()) {
-    double sum = 0.0;
-    for (const Influence& i : weights[v]) sum += static_cast<double>(i.weight);
-    ASSERT_NEAR(sum, 1.0, 3e-7);
-    ASSERT_LE(weights[v].size(), 4u);
-  }
+  test::expect_exact(weights, mesh, skeleton);
+  EXPECT_LE(weights.max_influences(), 4u);
 }
 
 class Neuroskinning : public testing::TestWithParam<Network> {};

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
 
 #include "geometry/mesh_makers.h"
 #include "osteon/base/random.h"
 #include "osteon/rig/skeleton.h"
+#include "osteon/rig/skin_weights.h"
 
 // Meshes and skeletons as no artist should make them.
 namespace osteon::test {
@@ -44,6 +47,16 @@ inline Skeleton any_skeleton(Random& random) {
     s.add("j" + std::to_string(j), static_cast<JointId>(random.below(j)),
           random.below(4) == 0 ? s.rest_positions[JointId{0}] : anywhere(random, 0.6f));
   return s;
+}
+
+// Every vertex has weights, and they sum to 1 as exactly as floats can.
+inline void expect_exact(const SkinWeights& weights, const TriangleMesh& mesh, const Skeleton& skeleton) {
+  validate(weights, mesh.positions.size(), skeleton.size());
+  for (VertexId v : mesh.positions.ids()) {
+    double sum = 0.0;
+    for (const Influence& i : weights[v]) sum += static_cast<double>(i.weight);
+    ASSERT_NEAR(sum, 1.0, 3e-7);
+  }
 }
 
 }  // namespace osteon::test

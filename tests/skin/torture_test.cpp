@@ -15,15 +15,6 @@ namespace {
 
 constexpr std::array kMethods{Method::rigid, Method::geovoxel, Method::heat, Method::biharmonic};
 
-void expect_exact(const SkinWeights& weights, const TriangleMesh& mesh, const Skeleton& skeleton) {
-  validate(weights, mesh.positions.size(), skeleton.size());
-  for (VertexId v : mesh.positions.ids()) {
-    double sum = 0.0;
-    for (const Influence& i : weights[v]) sum += static_cast<double>(i.weight);
-    ASSERT_NEAR(sum, 1.0, 3e-7);
-  }
-}
-
 TEST(Torture, a_hundred_heaps_of_pieces) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Random random(seed);
@@ -33,7 +24,7 @@ TEST(Torture, a_hundred_heaps_of_pieces) {
     options.method = kMethods[seed % kMethods.size()];
     options.resolution = 48;
     SCOPED_TRACE(seed);
-    expect_exact(bind(mesh, skeleton, options).weights, mesh, skeleton);
+    test::expect_exact(bind(mesh, skeleton, options).weights, mesh, skeleton);
   }
 }
 
@@ -46,7 +37,7 @@ TEST(Torture, five_hundred_parts) {
     BindOptions options;
     options.method = method;
     options.resolution = 96;
-    expect_exact(bind(mesh, skeleton, options).weights, mesh, skeleton);
+    test::expect_exact(bind(mesh, skeleton, options).weights, mesh, skeleton);
   }
 }
 
@@ -58,7 +49,7 @@ TEST(Torture, a_million_triangles) {
   skeleton.add("tip", root, {0.4f, 0.4f, 0});
   BindOptions options;
   options.resolution = 128;
-  expect_exact(bind(mesh, skeleton, options).weights, mesh, skeleton);
+  test::expect_exact(bind(mesh, skeleton, options).weights, mesh, skeleton);
 }
 
 }  // namespace

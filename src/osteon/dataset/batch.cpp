@@ -17,6 +17,9 @@
 namespace osteon::dataset {
 namespace {
 
+static_assert(geometry::kTreeJointFeatures == nets::tree_joint_features && geometry::kTreePairFeatures == nets::tree_pair_features);
+static_assert(geometry::kVoteFeatures == nets::vote_features);
+
 constexpr std::size_t kLeastJoints = 4;  // no rig is folded to fewer
 
 std::vector<float> plane_distances(const Skeleton& skeleton, const std::optional<Plane>& symmetry) {

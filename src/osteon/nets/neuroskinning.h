@@ -24,18 +24,27 @@ Input<B> graph_unit(B& b, const Path& path, const Input<B>& x, const MeshGraph<B
   return out;
 }
 
+// The three units (figure 4) over what each vertex is, and beside them the global branch, which leaves after the first and ends in the
+// largest of each channel over the mesh. `hidden`: of the first unit; the others have 64.
+template <Ops B>
+Input<B> units(B& b, const typename B::Tensor& x0, const MeshGraph<B>& mesh, const Neuro<B>& neuro, int hidden,
+               std::initializer_list<int> of_global) {
+  const Input<B> x1 = graph_unit<B>(b, Path("unit1"), {x0}, mesh, neuro.nearest[0], hidden, 4);
+  const auto pooled = mlp<B>(b, Path("global"), x1, of_global);
+  const auto global = b.max_by(pooled, mesh.batch.offsets);
+  const Input<B> x2 = graph_unit<B>(b, Path("unit2"), x1, mesh, neuro.nearest[1], 64, 2);
+  Input<B> x3 = graph_unit<B>(b, Path("unit3"), x2, mesh, neuro.nearest[2], 64, 2);
+  x3.emplace_back(global, mesh.batch.mesh_of);
+  return x3;
+}
+
 // The paper's network with its sizes: a logit for each slot of the super skeleton, (V,neuro_slots), for a softmax over the slots that the
 // skeleton has. The global branch leaves after the first unit (figure 4).
 template <Ops B>
 typename B::Tensor slot_net(B& b, const MeshGraph<B>& mesh, const Neuro<B>& neuro) {
   const auto x0 = mlp<B>(b, Path("input"), {neuro.features}, {128, 64});
-  const Input<B> x1 = graph_unit<B>(b, Path("unit1"), {x0}, mesh, neuro.nearest[0], 64, 4);
-  const auto pooled = mlp<B>(b, Path("global"), x1, {512, 1024});
-  const auto global = b.max_by(pooled, mesh.batch.offsets);
-  const Input<B> x2 = graph_unit<B>(b, Path("unit2"), x1, mesh, neuro.nearest[1], 64, 2);
-  Input<B> x3 = graph_unit<B>(b, Path("unit3"), x2, mesh, neuro.nearest[2], 64, 2);
-  x3.emplace_back(global, mesh.batch.mesh_of);
-  const auto head = mlp<B>(b, Path("head"), x3, {1024, 512});
+  const Input<B> seen = units<B>(b, x0, mesh, neuro, 64, {512, 1024});
+  const auto head = mlp<B>(b, Path("head"), seen, {1024, 512});
   return b.linear(Path("out"), head, neuro_slots);
 }
 
@@ -53,13 +62,8 @@ typename B::Tensor joint_choice_net(B& b, const MeshGraph<B>& mesh, const Neuro<
   const auto sorted = b.rows(pair, choices.by_bone);
   const auto seen = b.max_by(sorted, choices.bone_offsets);  // what a joint sees of its vertices
   const auto whole = mlp<B>(b, Path("whole"), {joint, seen}, {64});
-  const Input<B> x1 = graph_unit<B>(b, Path("unit1"), {vertex}, mesh, neuro.nearest[0], 32, 4);
-  const auto pooled = mlp<B>(b, Path("global"), x1, {64, 128});
-  const auto global = b.max_by(pooled, mesh.batch.offsets);
-  const Input<B> x2 = graph_unit<B>(b, Path("unit2"), x1, mesh, neuro.nearest[1], 64, 2);
-  Input<B> x3 = graph_unit<B>(b, Path("unit3"), x2, mesh, neuro.nearest[2], 64, 2);
-  x3.emplace_back(global, mesh.batch.mesh_of);
-  const auto of_vertex = mlp<B>(b, Path("vertex"), x3, {128});
+  const Input<B> around = units<B>(b, vertex, mesh, neuro, 32, {64, 128});
+  const auto of_vertex = mlp<B>(b, Path("vertex"), around, {128});
   const auto head = mlp<B>(b, Path("head"), {pair, choices.features, {whole, choices.bone_of}, {of_vertex, choices.vertex_of}}, {128, 128});
   return b.linear(Path("out"), head, 1);
 }

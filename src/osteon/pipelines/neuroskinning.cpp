@@ -76,16 +76,23 @@ class Owners {
   PerJoint<JointId> first_;
 };
 
+// Logits of a network that gave no numbers say nothing.
+Matrix finite(Matrix logits, std::vector<std::string>& warnings) {
+  if (logits.allFinite()) return logits;
+  warnings.push_back("the network gave no numbers: weights follow geometry, or all joints alike, instead");
+  return Matrix::Zero(logits.rows(), logits.cols());
+}
+
 // Softmax over the joints that each vertex may choose, in the joints of the original, (V,J).
 Matrix joint_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
-                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, const skin::BoneChoiceOptions& options) {
+                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, const skin::BoneChoiceOptions& options,
+                     std::vector<std::string>& warnings) {
   const skin::BoneChoices choices = skin::bone_choices(body.mesh(), body.merged.skeleton, options);
   const skin::ChoiceRows rows =
       skin::choice_rows(body.mesh().positions.raw(), body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
   neuro.choices.add(rows.features, rows.offsets, rows.joints);
   neuro.joints = rows.joint_features;
-  Matrix logits = model(body.graph, neuro);
-  if (!logits.allFinite()) logits.setZero();
+  const Matrix logits = finite(model(body.graph, neuro), warnings);
   Matrix out = Matrix::Zero(choices.nearest.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()));
   for (Eigen::Index v = 0; v < out.rows(); ++v) {
     const auto first = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v)]);
@@ -104,11 +111,10 @@ Matrix joint_weights(const Body& body, const Owners& owners, const infer::Neuros
 
 // The same by the paper's network: softmax over the slots that the skeleton has.
 Matrix slot_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
-                    const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment) {
+                    const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, std::vector<std::string>& warnings) {
   const Skeleton& skeleton = body.merged.skeleton;
   neuro.features = skin::slot_rows(body.mesh().positions.raw(), body.normals, skeleton, super, assignment, nets::neuro_slots);
-  Matrix logits = model(body.graph, neuro);
-  if (!logits.allFinite()) logits.setZero();
+  const Matrix logits = finite(model(body.graph, neuro), warnings);
   Matrix out = Matrix::Constant(logits.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()), kAbsent);
   std::vector<bool> taken(super.slots().size(), false);
   for (JointId j : skeleton.names.ids()) {
@@ -136,8 +142,8 @@ NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skelet
   const auto near = geometry::geodesic_balls(body.mesh(), kPoolReach, nets::neuro_pooling.back() - 1).members;
   neuro.add_nearest(near.offsets, near.members, 0);
   const Owners owners(skeleton, body.merged);
-  Matrix weights = model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment)
-                                     : joint_weights(body, owners, model, neuro, super, assignment, options.choices);
+  Matrix weights = model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment, result.warnings)
+                                     : joint_weights(body, owners, model, neuro, super, assignment, options.choices, result.warnings);
   for (int round = 0; round < options.smooth; ++round) weights = skin::smooth_rows(weights, body.ring);
   skin::prune_rows(weights, options.prune_share, options.max_influences);
   skin::fill_empty_rows(weights, body.mesh().positions, body.ring);

@@ -26,7 +26,7 @@ struct Recipe {
 };
 // Time and batches as for the shipped weights (docs/training.md), a fifth of their learning rates.
 constexpr Recipe kRecipes[] = {
-    {Task::votes, Network::votes, 0.5, 4e-4, 3}, {Task::bind, Network::bind, 0.3, 6e-4, 4}, {Task::tree, Network::tree, 0.2, 4e-4, 8}};
+    {Task::votes, Network::votes, 0.5, 4e-4, 3}, {Task::bind, Network::bind, 0.3, 6e-4, 4}, {Task::tree, Network::tree, 0.2, 3e-4, 8}};
 
 fs::path file_of(const fs::path& folder, Network network) { return folder / fmt::format("{}.safetensors", name_of(network)); }
 

@@ -6,11 +6,11 @@
 // Written by scripts/calibrate for the networks in models/rignet; run it again when they, or how joints are found, change.
 namespace osteon::pipelines {
 
-constexpr Logistic<kJointEvidence.size()> kJointFit{0.68913f, {0.097546f, 2.8816f, 0.34003f}};
+constexpr Logistic<kJointEvidence.size()> kJointFit{0.27896f, {-0.025102f, 3.3198f, 0.32369f}};
 
-constexpr Logistic<kCharacterEvidence.size()> kCharacterFit{-5.3705f, {7.7094f, 3.5831f, 0.73447f}};
+constexpr Logistic<kCharacterEvidence.size()> kCharacterFit{-4.9383f, {5.7187f, 4.7129f, 0.71073f}};
 
 // Below this confidence a rig should not be used unseen.
-constexpr float kLowConfidence = 0.031f;
+constexpr float kLowConfidence = 0.138f;
 
 }  // namespace osteon::pipelines

@@ -12,7 +12,7 @@ namespace osteon::pipelines {
 
 // The level of detail of the paper: the bandwidth may be anything in this range; in the middle is the one that gives the best skeletons of
 // the validation characters.
-constexpr float kFinestBandwidth = 0.01f, kDefaultBandwidth = 0.027f, kCoarsestBandwidth = 0.1f;
+constexpr float kFinestBandwidth = 0.01f, kDefaultBandwidth = 0.024f, kCoarsestBandwidth = 0.1f;
 
 // Detail 0 is the coarsest bandwidth, 0.5 the default, 1 the finest, geometric in between. Pre: 0 <= detail <= 1.
 float bandwidth_of_detail(float detail);
@@ -28,7 +28,7 @@ struct JointExtractionOptions {
   float step = 0.3f;              // of the mean shift
   float min_attention = 1e-3f;    // candidates below are ignored
   float expected_joints = 20.0f;  // about how many there are: where there are few, each gathers more
-  float min_share = 0.013f;       // one of 20 joints gathers at least this share of all attention within the default bandwidth (of J: times
+  float min_share = 0.016f;       // one of 20 joints gathers at least this share of all attention within the default bandwidth (of J: times
                              // the root of 20/J); less within a finer one (by the square) and more within a coarser one (in proportion)
   float spread_share = 0.02f;    // of a joint that is found only with twice the bandwidth, among the votes that no other joint explains
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the

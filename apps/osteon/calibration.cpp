@@ -273,9 +273,10 @@ struct Fits {
 
 Fits fit(const std::vector<Case>& known, const std::vector<Case>& strange, const std::vector<Case>& unseen) {
   const Outcomes joints = joint_outcomes(known), characters = character_outcomes(known, strange);
-  const LogisticFit joint_fit = metrics::fit_logistic(joints), character_fit = metrics::fit_logistic(characters);
-  const std::vector<double> joint_values = metrics::cross_validated(joints);
-  const std::vector<double> confidence = products(known, metrics::cross_validated(characters), joint_values);
+  constexpr auto allowed = metrics::Factors::not_negative;  // all of it is evidence for a joint or a character
+  const LogisticFit joint_fit = metrics::fit_logistic(joints, allowed), character_fit = metrics::fit_logistic(characters, allowed);
+  const std::vector<double> joint_values = metrics::cross_validated(joints, allowed);
+  const std::vector<double> confidence = products(known, metrics::cross_validated(characters, allowed), joint_values);
   const std::vector<double> of_objects =
       products(unseen, predictions(character_fit, character_outcomes({}, unseen)), predictions(joint_fit, joint_outcomes(unseen)));
   const std::vector<double> shipped =

@@ -20,18 +20,21 @@ struct Subject {
   std::vector<Vec3f> joints;
   std::vector<int> parents;
   std::vector<Segment> bones;
+  std::vector<int> starts;  // joints of the bones
 };
 
 Subject subject(std::int64_t vertices) {
   const Rig rig = synth::make_character(synth::Kind::Biped, 1, {.cells = 160, .finish = synth::Finish::Smooth});
   WorkingMesh working = make_working_mesh(rig.mesh, {.target_vertices = static_cast<std::size_t>(vertices)});
-  Subject out{std::move(working.mesh), {}, {}, {}};
+  Subject out{std::move(working.mesh), {}, {}, {}, {}};
   for (JointId j : rig.skeleton.names.ids()) {
     out.joints.push_back(working.normalization.apply(rig.skeleton.rest_positions[j]));
     out.parents.push_back(rig.skeleton.parents[j] ? static_cast<int>(*rig.skeleton.parents[j]) : -1);
   }
-  for (const Bone& bone : bones(rig.skeleton))
+  for (const Bone& bone : bones(rig.skeleton)) {
     out.bones.push_back({working.normalization.apply(bone.segment.a), working.normalization.apply(bone.segment.b)});
+    out.starts.push_back(static_cast<int>(bone.start));
+  }
   return out;
 }
 
@@ -50,6 +53,9 @@ void voxels(benchmark::State& state) {
 void distances(benchmark::State& state) {
   run(state, [](const Subject& s) { return volumetric_geodesic_distance(s.mesh, voxelize(s.mesh), s.bones); });
 }
+void nearest_distances(benchmark::State& state) {
+  run(state, [](const Subject& s) { return volumetric_geodesic_distance(s.mesh, voxelize(s.mesh), s.bones, {s.starts, 8}); });
+}
 void symmetry(benchmark::State& state) {
   run(state, [](const Subject& s) { return symmetry_plane(s.mesh); });
 }
@@ -63,6 +69,7 @@ void pairs(benchmark::State& state) {
 BENCHMARK(balls)->Arg(1200)->Arg(4000)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(voxels)->Arg(1200)->Arg(4000)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(distances)->Arg(1200)->Arg(4000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(nearest_distances)->Arg(1200)->Arg(4000)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(symmetry)->Arg(1200)->Arg(4000)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(labels)->Arg(1200)->Arg(4000)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(pairs)->Arg(1200)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -32,6 +32,13 @@ TEST(FitLogistic, finds_the_law_that_the_outcomes_were_drawn_from) {
   EXPECT_NEAR(fit(std::vector{0.0f, 10.0f, 0.0f}), sigmoid(0.5), 0.02);
 }
 
+TEST(FitLogistic, leaves_out_what_speaks_against_success_where_nothing_may) {
+  const LogisticFit fit = fit_logistic(drawn(20000), Factors::not_negative);
+  EXPECT_GT(fit.factors[0], 1.0);
+  EXPECT_EQ(fit.factors[1], 0.0);
+  EXPECT_GE(fit.factors[2], 0.0);
+}
+
 TEST(FitLogistic, predicts_as_many_successes_as_there_were) {
   const auto outcomes = drawn(300);
   const LogisticFit fit = fit_logistic(outcomes);

@@ -55,11 +55,15 @@ TEST(Confidence, is_a_probability) {
   }
 }
 
-TEST(Confidence, rises_with_the_votes_for_a_joint) {
+TEST(Confidence, rises_with_the_evidence_for_a_joint) {
   const auto e = Scene().evidence();
-  JointEvidence fewer = e[0];
-  fewer[0] -= 1.0f;
-  EXPECT_GT(joint_confidence(e[0]), joint_confidence(fewer));
+  JointEvidence less = e[0];
+  for (float& x : less) {
+    const float before = joint_confidence(less);
+    x -= 1.0f;
+    EXPECT_LE(joint_confidence(less), before);
+  }
+  EXPECT_LT(joint_confidence(less), joint_confidence(e[0]));
 }
 
 }  // namespace

@@ -80,8 +80,9 @@ void derive_inputs(PreparedCharacter& character) {
 
 void derive_nearest_bones(PreparedCharacter& character, int most) {
   const std::vector<Bone> all_bones = bones(character.skeleton);
-  const Matrix distances = geometry::volumetric_geodesic_distance(character.mesh, character.voxels, segments(all_bones));
-  keep_nearest(geometry::one_bone_per_joint(distances, starts(all_bones)), most, character);
+  const std::vector<int> joint_of = starts(all_bones);
+  const Matrix distances = geometry::volumetric_geodesic_distance(character.mesh, character.voxels, segments(all_bones), {joint_of, most});
+  keep_nearest(geometry::one_bone_per_joint(distances, joint_of), most, character);
 }
 
 void derive_from_shape(PreparedCharacter& character, Parts parts) {

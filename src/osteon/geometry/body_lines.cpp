@@ -31,13 +31,13 @@ double winding_number(const TriangleMesh& mesh, const Vec3f& p) {
 }  // namespace
 
 BodyLines::BodyLines(const TriangleMesh& mesh, const VoxelGrid& grid)
-    : mesh_(mesh), grid_(grid), surface_(mesh), normals_(mesh.positions.size()), faces_of_(mesh.positions.size()) {
+    : mesh_(mesh), grid_(grid), surface_(mesh), normals_(mesh.positions.size()), normals_around_(mesh.positions.size()) {
   for (FaceId f : mesh.faces.ids()) {
     const Vec3f area = area_vector(mesh, f);
     if (area.isZero(0.0f)) continue;
     for (VertexId v : mesh.faces[f]) {
       normals_[v] += area;
-      faces_of_[v].push_back(f);
+      normals_around_[v].push_back(area.stableNormalized());
     }
   }
   for (Vec3f& n : normals_) n.stableNormalize();
@@ -86,7 +86,7 @@ bool BodyLines::passes_outside(const Vec3f& from, const Vec3f& line) const {
 }
 
 bool BodyLines::points_inwards(VertexId v, const Vec3f& direction) const {
-  return std::ranges::all_of(faces_of_[v], [&](FaceId f) { return area_vector(mesh_, f).stableNormalized().dot(direction) < kInwards; });
+  return std::ranges::all_of(normals_around_[v], [&](const Vec3f& normal) { return normal.dot(direction) < kInwards; });
 }
 
 }  // namespace osteon::geometry

@@ -41,7 +41,7 @@ class BodyLines {
   const VoxelGrid& grid_;
   Bvh surface_;
   PerVertex<Vec3f> normals_;
-  PerVertex<std::vector<FaceId>> faces_of_;  // those with area
+  PerVertex<std::vector<Vec3f>> normals_around_;  // of the faces with area, of unit length
 };
 
 }  // namespace osteon::geometry

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "osteon/base/parallel.h"
@@ -14,7 +15,7 @@ namespace {
 
 using Box = Eigen::AlignedBox3f;
 
-constexpr std::size_t kLeafSize = 4;
+constexpr std::size_t kLeafSize = TriangleBlock::kSize;
 constexpr int kBins = 16;
 constexpr int kSplitByAreaDepth = 48;  // below it ranges are halved, so that the depth stays under 48 + 32
 constexpr int kStack = 96;
@@ -27,15 +28,18 @@ float half_area(const Box& box) {
 // A ray with what the tests of boxes and triangles need, computed once.
 struct Ray {
   Vec3f origin, inverse;
-  std::array<int, 3> axis;  // the direction's largest component last
+  std::array<std::size_t, 3> axis;  // the direction's largest component last
+  std::array<float, 3> at;          // the origin along these
   Vec3f shear;
 
   Ray(const Vec3f& o, const Vec3f& direction) : origin(o), inverse(direction.cwiseInverse()) {
     int z = 0;
     direction.cwiseAbs().maxCoeff(&z);
-    axis = {(z + 1) % 3, (z + 2) % 3, z};
-    if (direction[z] < 0) std::swap(axis[0], axis[1]);  // keeps the winding
-    shear = Vec3f(direction[axis[0]] / direction[z], direction[axis[1]] / direction[z], 1 / direction[z]);
+    int x = (z + 1) % 3, y = (z + 2) % 3;
+    if (direction[z] < 0) std::swap(x, y);  // keeps the winding
+    axis = {static_cast<std::size_t>(x), static_cast<std::size_t>(y), static_cast<std::size_t>(z)};
+    at = {o[x], o[y], o[z]};
+    shear = Vec3f(direction[x] / direction[z], direction[y] / direction[z], 1 / direction[z]);
   }
 
   // Where the ray enters the box, if it does so before `limit`. A zero component of the direction makes infinities of the right sign, and
@@ -51,26 +55,40 @@ struct Ray {
     return near <= far ? std::optional(near) : std::nullopt;
   }
 
-  // Distance to the triangle, by the signs of the three edge functions in the plane across the ray (Woop et al. 2013).
-  std::optional<float> meets(const Vec3f& corner_a, const Vec3f& corner_b, const Vec3f& corner_c) const {
-    const Eigen::Vector3d a = sheared(corner_a), b = sheared(corner_b), c = sheared(corner_c);
-    const double u = c.x() * b.y() - c.y() * b.x();
-    const double v = a.x() * c.y() - a.y() * c.x();
-    const double w = b.x() * a.y() - b.y() * a.x();
-    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
-    const double sum = u + v + w;
-    if (sum == 0) return std::nullopt;  // without area, or seen edge-on
-    const auto distance = static_cast<float>((u * a.z() + v * b.z() + w * c.z()) / sum);
-    return distance >= 0 ? std::optional(distance) : std::nullopt;
+  // Distances to the triangles, by the signs of the three edge functions in the plane across the ray (Woop et al. 2013); infinite where it
+  // misses them. Products of the sheared corners are exact in double, so the edge functions of two faces agree on their common edge.
+  std::array<float, TriangleBlock::kSize> meets(const TriangleBlock& block) const {
+    constexpr std::size_t n = TriangleBlock::kSize;
+    double ax[n], ay[n], az[n], bx[n], by[n], bz[n], cx[n], cy[n], cz[n];
+    shear_corner(block.a, ax, ay, az);
+    shear_corner(block.b, bx, by, bz);
+    shear_corner(block.c, cx, cy, cz);
+    std::array<float, n> out;
+    for (std::size_t l = 0; l < n; ++l) {
+      const double u = cx[l] * by[l] - cy[l] * bx[l];
+      const double v = ax[l] * cy[l] - ay[l] * cx[l];
+      const double w = bx[l] * ay[l] - by[l] * ax[l];
+      const double sum = u + v + w;  // 0: without area, or seen edge-on
+      const double least = std::min(std::min(u, v), w), most = std::max(std::max(u, v), w);
+      const auto distance = static_cast<float>((u * az[l] + v * bz[l] + w * cz[l]) / sum);
+      const bool is_hit = !(least < 0 && most > 0) && sum != 0 && distance >= 0;
+      out[l] = is_hit ? distance : std::numeric_limits<float>::infinity();
+    }
+    return out;
   }
 
  private:
-  // The point with the origin at 0 and the ray along z. Its products are exact in double, so the edge functions of two faces agree on their
-  // common edge.
-  Eigen::Vector3d sheared(const Vec3f& p) const {
-    const Vec3f q = p - origin;
-    const float x = q[axis[0]] - shear.x() * q[axis[2]], y = q[axis[1]] - shear.y() * q[axis[2]];
-    return {x, y, shear.z() * q[axis[2]]};
+  // The points with the origin at 0 and the ray along z.
+  void shear_corner(const TriangleBlock::Corner& corner, double* x, double* y, double* z) const {
+    const float* in_x = corner[axis[0]].data();
+    const float* in_y = corner[axis[1]].data();
+    const float* in_z = corner[axis[2]].data();
+    for (std::size_t l = 0; l < TriangleBlock::kSize; ++l) {
+      const float along = in_z[l] - at[2];
+      x[l] = static_cast<double>((in_x[l] - at[0]) - shear.x() * along);
+      y[l] = static_cast<double>((in_y[l] - at[1]) - shear.y() * along);
+      z[l] = static_cast<double>(shear.z() * along);
+    }
   }
 };
 
@@ -97,6 +115,8 @@ Vec3f closest_on_segments(const Eigen::Vector3d& p, const std::array<Eigen::Vect
   }
   return weights;
 }
+
+Vec3f corner(const TriangleBlock::Corner& all, std::size_t triangle) { return {all[0][triangle], all[1][triangle], all[2][triangle]}; }
 
 float squared_distance(const Vec3f& p, const Vec3f& low, const Vec3f& high) { return (p - p.cwiseMax(low).cwiseMin(high)).squaredNorm(); }
 
@@ -264,12 +284,24 @@ Bvh::Bvh(const TriangleMesh& mesh) {
   if (mesh.faces.empty()) return;
   Builder builder(mesh);
   nodes_ = builder.build();
-  triangles_.resize(mesh.faces.size());
-  parallel_for(triangles_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  std::vector<Node*> leaves;
+  for (Node& node : nodes_)
+    if (node.count > 0) leaves.push_back(&node);
+  blocks_.resize(leaves.size());
+  parallel_for(leaves.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto face = static_cast<FaceId>(builder.order[i]);
-      const auto [a, b, c] = mesh.faces[face];
-      triangles_[i] = {mesh.positions[a], mesh.positions[b], mesh.positions[c], face};
+      Node& leaf = *leaves[i];
+      for (std::uint32_t l = 0; l < TriangleBlock::kSize; ++l) {
+        const auto face = static_cast<FaceId>(builder.order[leaf.first + std::min(l, leaf.count - 1)]);
+        const auto [a, b, c] = mesh.faces[face];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          blocks_[i].a[axis][l] = mesh.positions[a][static_cast<int>(axis)];
+          blocks_[i].b[axis][l] = mesh.positions[b][static_cast<int>(axis)];
+          blocks_[i].c[axis][l] = mesh.positions[c][static_cast<int>(axis)];
+        }
+        blocks_[i].face[l] = face;
+      }
+      leaf.first = static_cast<std::uint32_t>(i);
     }
   });
 }
@@ -289,12 +321,14 @@ std::optional<RayHit> Bvh::first_hit(const Vec3f& origin, const Vec3f& direction
     const auto [at, near] = stack[--size];
     if (near > best.distance) continue;
     const Node& node = nodes_[at];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const LeafTriangle& t = triangles_[i];
-      const auto distance = ray.meets(t.a, t.b, t.c);
-      if (distance && beats(*distance, t.face, best.distance, best.face)) best = {t.face, *distance};
+    if (node.count > 0) {
+      const TriangleBlock& block = blocks_[node.first];
+      const auto distances = ray.meets(block);
+      for (std::size_t l = 0; l < TriangleBlock::kSize; ++l)
+        if (std::isfinite(distances[l]) && beats(distances[l], block.face[l], best.distance, best.face))
+          best = {block.face[l], distances[l]};
+      continue;
     }
-    if (node.count > 0) continue;
     const std::size_t before = size;
     push(at + 1);
     push(node.first);
@@ -316,11 +350,10 @@ bool Bvh::blocked(const Segment& segment) const {
     const std::uint32_t at = stack[--size];
     const Node& node = nodes_[at];
     if (!ray.enters(node.low, node.high, length)) continue;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto distance = ray.meets(triangles_[i].a, triangles_[i].b, triangles_[i].c);
-      if (distance && *distance <= length) return true;
+    if (node.count > 0) {
+      if (std::ranges::min(ray.meets(blocks_[node.first])) <= length) return true;
+      continue;
     }
-    if (node.count > 0) continue;
     stack[size++] = node.first;
     stack[size++] = at + 1;
   }
@@ -338,16 +371,19 @@ ClosestPoint Bvh::closest_point(const Vec3f& p) const {
     const auto [at, box2] = stack[--size];
     if (box2 > best2 * 1.00001f) continue;  // the margin covers the rounding of both distances
     const Node& node = nodes_[at];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const LeafTriangle& t = triangles_[i];
-      const Vec3f weights = closest_barycentric(p, t.a, t.b, t.c);
-      const Vec3f position = weights.x() * t.a + weights.y() * t.b + weights.z() * t.c;
-      const float distance2 = (position - p).squaredNorm();
-      if (!beats(distance2, t.face, best2, best.face)) continue;
-      best2 = distance2;
-      best = {t.face, weights, position, 0};
+    if (node.count > 0) {
+      const TriangleBlock& block = blocks_[node.first];
+      for (std::uint32_t l = 0; l < node.count; ++l) {
+        const Vec3f a = corner(block.a, l), b = corner(block.b, l), c = corner(block.c, l);
+        const Vec3f weights = closest_barycentric(p, a, b, c);
+        const Vec3f position = weights.x() * a + weights.y() * b + weights.z() * c;
+        const float distance2 = (position - p).squaredNorm();
+        if (!beats(distance2, block.face[l], best2, best.face)) continue;
+        best2 = distance2;
+        best = {block.face[l], weights, position, 0};
+      }
+      continue;
     }
-    if (node.count > 0) continue;
     const std::uint32_t left = at + 1, right = node.first;
     stack[size++] = {right, squared_distance(p, nodes_[right].low, nodes_[right].high)};
     stack[size++] = {left, squared_distance(p, nodes_[left].low, nodes_[left].high)};

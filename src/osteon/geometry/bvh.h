@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -26,6 +27,15 @@ struct ClosestPoint {
 // Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 Vec3f closest_barycentric(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c);
 
+// The corners of up to four triangles, coordinate by coordinate, so that a ray is tested against all at once. Where there are fewer, the
+// last is repeated.
+struct TriangleBlock {
+  static constexpr std::size_t kSize = 4;
+  using Corner = std::array<std::array<float, kSize>, 3>;  // [axis][triangle]
+  Corner a, b, c;
+  std::array<FaceId, kSize> face;
+};
+
 // A tree of boxes over the faces of a mesh: rays and closest points in about log(faces) steps. It copies what it needs: the mesh may go.
 // Faces with equal answers (a shared edge) are resolved to the smallest FaceId, so answers do not depend on how the tree was built.
 // Built top-down by binned surface area heuristic: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
@@ -47,17 +57,13 @@ class Bvh {
  private:
   struct Node {
     Vec3f low, high;
-    std::uint32_t first;  // leaf: first of its triangles_; inner node: its second child (the first child follows it)
+    std::uint32_t first;  // leaf: its block; inner node: its second child (the first child follows it)
     std::uint32_t count;  // triangles of a leaf; 0 for an inner node
-  };
-  struct LeafTriangle {
-    Vec3f a, b, c;
-    FaceId face;
   };
   struct Builder;
 
   std::vector<Node> nodes_;  // depth first; empty when the mesh has no faces
-  std::vector<LeafTriangle> triangles_;
+  std::vector<TriangleBlock> blocks_;
 };
 
 }  // namespace osteon::geometry

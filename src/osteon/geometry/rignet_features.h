@@ -30,6 +30,8 @@ Matrix one_bone_per_joint(const Matrix& distances, std::span<const int> starts);
 // distance.
 IndexMatrix nearest_bones(const Matrix& distances, int k);
 
+constexpr int kSkinBones = 5;  // that a vertex chooses from in the paper
+
 struct SkinInputs {
   Matrix features;      // (V, 3 + 8k): position, then the bones of `nearest`, nearest first
   IndexMatrix nearest;  // (V,k) bone; -1 where fewer than k are at a finite distance: the features there repeat the nearest bone's
@@ -43,7 +45,7 @@ float distance_of_proximity(float proximity);  // the way back
 // The k nearest bones of each vertex by `distances`, (V,B), from volumetric_geodesic_distance; ties: the smaller index. `leaf` (B) is 1 for
 // the zero-length bones at leaf joints. Pre: positions and rows of `distances` are equally many; each row has a finite distance.
 SkinInputs skin_inputs(std::span<const Vec3f> positions, std::span<const Segment> bones, std::span<const std::uint8_t> leaf,
-                       const Matrix& distances, int k = 5);
+                       const Matrix& distances, int k = kSkinBones);
 
 struct SkinTargets {
   Matrix weights;              // (V,k), each row sums to 1, or is zero where `covered` is

@@ -4,18 +4,25 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
+#include <queue>
+#include <utility>
 #include <vector>
 
 #include "osteon/base/parallel.h"
 #include "osteon/geometry/body_graph.h"
 #include "osteon/geometry/body_lines.h"
+#include "osteon/geometry/rignet_features.h"
 
 namespace osteon::geometry {
 namespace {
 
 constexpr float kBridge = 0.02f;      // as in geodesic_balls
 constexpr float kSampleStep = 0.02f;  // along a bone; two voxels of the 88^3 grid
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kVerticesPerTask = 32;
 
 float parameter_of_nearest(const Segment& s, const Vec3f& p) {
   const Vec3f d = s.b - s.a;
@@ -41,48 +48,165 @@ std::vector<Sample> sampled(const Segment& bone, const BodyLines& lines) {
   return samples;
 }
 
-void start_at_nearest_faces(const TriangleMesh& mesh, const std::vector<Sample>& samples, std::vector<float>& start) {
-  for (const Sample& s : samples)
-    for (VertexId corner : mesh.faces[s.surface.face]) {
-      float& at_corner = start[index(corner)];
-      at_corner = std::min(at_corner, s.surface.distance + (mesh.positions[corner] - s.surface.position).norm());
-    }
-}
-
-void start_at_visible_vertices(const TriangleMesh& mesh, const BodyLines& lines, const Segment& bone, const std::vector<Sample>& samples,
-                               std::vector<float>& start) {
-  for (VertexId v : mesh.positions.ids()) {
-    const float t = parameter_of_nearest(bone, mesh.positions[v]);
-    const Vec3f from = point_at(bone, t);
-    const Sample& beside = samples[static_cast<std::size_t>(std::lround(t * static_cast<float>(samples.size() - 1)))];
-    if (beside.inside && lines.sees(from, v)) start[index(v)] = (mesh.positions[v] - from).norm();
+// Ways from all bones at once, nearest first, so that a vertex can stop listening once it has heard of as many joints as are wanted: what
+// is farther from it than these is also farther from everybody behind it.
+class Ways {
+ public:
+  Ways(const TriangleMesh& mesh, const BodyLines& lines, std::span<const Segment> bones, const NearestJoints& wanted)
+      : mesh_(mesh),
+        lines_(lines),
+        bones_(bones),
+        wanted_(wanted),
+        samples_(bones.size()),
+        straight_(mesh.positions.size(), bones.size()),
+        order_(mesh.positions.size(), bones.size()),
+        sight_(mesh.positions.size() * bones.size(), Sight::unknown),
+        distances_(Matrix::Constant(rows(), columns(), kInfinity)),
+        heard_(mesh.positions.size()) {
+    parallel_for(bones.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) samples_[b] = sampled(bones[b], lines);
+    });
+    parallel_for(mesh.positions.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) look_around(static_cast<Eigen::Index>(v));
+    });
   }
-}
 
-// (V)
-std::vector<float> distances_to(const Segment& bone, const TriangleMesh& mesh, const BodyLines& lines, const SurfaceGraph& body) {
-  const std::vector<Sample> samples = sampled(bone, lines);
-  std::vector<float> start(mesh.positions.size(), std::numeric_limits<float>::infinity());
-  start_at_nearest_faces(mesh, samples, start);
-  start_at_visible_vertices(mesh, lines, bone, samples, start);
-  return shortest_paths(body, std::move(start));
-}
+  Matrix run(const SurfaceGraph& body) {
+    for (Eigen::Index b = 0; b < columns(); ++b) start_at_nearest_faces(b);
+    for (Eigen::Index v = 0; v < rows(); ++v) look_next(v, 0);
+    while (!queue_.empty()) {
+      const Label label = queue_.top();
+      queue_.pop();
+      if (label.rank >= 0) look_next(label.vertex, label.rank + 1);
+      if (!is_wanted(label) || (label.rank >= 0 && !sees(label.vertex, label.bone))) continue;
+      settle(label);
+      for (const auto& [to, length] : body.of(static_cast<std::size_t>(label.vertex)))
+        offer(static_cast<Eigen::Index>(to), label.bone, label.distance + length);
+    }
+    for (Eigen::Index v = 0; v < rows(); ++v) forget_unsettled(v);
+    return std::move(distances_);
+  }
+
+ private:
+  enum class Sight : std::uint8_t { unknown, no, yes };
+  // A way to a vertex that may be its shortest from the bone: a straight one not looked along yet (the rank-th nearest bone in a straight
+  // line), or one over the graph (rank -1).
+  struct Label {
+    float distance;
+    std::int32_t vertex, bone, rank;
+  };
+  struct Later {
+    bool operator()(const Label& a, const Label& b) const { return a.distance > b.distance; }
+  };
+  struct Heard {
+    std::int32_t bone;
+    float distance;
+  };
+
+  static std::int32_t number(Eigen::Index i) { return static_cast<std::int32_t>(i); }
+
+  Eigen::Index rows() const { return static_cast<Eigen::Index>(mesh_.positions.size()); }
+  Eigen::Index columns() const { return static_cast<Eigen::Index>(bones_.size()); }
+  int joint_of(Eigen::Index bone) const { return wanted_.joint_of[static_cast<std::size_t>(bone)]; }
+  const Vec3f& position(Eigen::Index v) const { return mesh_.positions.raw()[static_cast<std::size_t>(v)]; }
+
+  // All straight distances; and along those that will hardly be spared, whether the bone is seen, while there are many threads.
+  void look_around(Eigen::Index v) {
+    for (Eigen::Index b = 0; b < columns(); ++b) {
+      const Segment& bone = bones_[static_cast<std::size_t>(b)];
+      straight_(v, b) = (position(v) - point_at(bone, parameter_of_nearest(bone, position(v)))).norm();
+      order_(v, b) = static_cast<int>(b);
+    }
+    std::ranges::sort(order_.row(v).begin(), order_.row(v).end(), {}, [&](int b) { return std::pair(straight_(v, b), b); });
+    for (Eigen::Index i = 0; i < std::min<Eigen::Index>(wanted_.count, columns()); ++i) sees(v, order_(v, i));
+  }
+
+  bool sees(Eigen::Index v, Eigen::Index b) {
+    Sight& known = sight_[static_cast<std::size_t>(v * columns() + b)];
+    if (known != Sight::unknown) return known == Sight::yes;
+    const Segment& bone = bones_[static_cast<std::size_t>(b)];
+    const float t = parameter_of_nearest(bone, position(v));
+    const std::vector<Sample>& samples = samples_[static_cast<std::size_t>(b)];
+    const Sample& beside = samples[static_cast<std::size_t>(std::lround(t * static_cast<float>(samples.size() - 1)))];
+    const bool is_seen = beside.inside && lines_.sees(point_at(bone, t), VertexId{static_cast<std::uint32_t>(v)});
+    known = is_seen ? Sight::yes : Sight::no;
+    return is_seen;
+  }
+
+  void look_next(Eigen::Index v, Eigen::Index rank) {
+    if (rank == columns()) return;
+    const Eigen::Index bone = order_(v, rank);
+    if (const float distance = straight_(v, bone); distance <= reach(v)) queue_.push({distance, number(v), number(bone), number(rank)});
+  }
+
+  void start_at_nearest_faces(Eigen::Index bone) {
+    for (const Sample& s : samples_[static_cast<std::size_t>(bone)])
+      for (VertexId corner : mesh_.faces[s.surface.face])
+        offer(static_cast<Eigen::Index>(index(corner)), bone, s.surface.distance + (mesh_.positions[corner] - s.surface.position).norm());
+  }
+
+  void offer(Eigen::Index v, Eigen::Index bone, float distance) {
+    if (distance >= distances_(v, bone) || distance > reach(v)) return;
+    distances_(v, bone) = distance;
+    queue_.push({distance, number(v), number(bone), -1});
+  }
+
+  // How far the last of the wanted joints is, once all are known.
+  float reach(Eigen::Index v) const { return heard_[static_cast<std::size_t>(v)].reach; }
+
+  // Of a joint that is no nearer by another bone, and not known by a shorter way. Equal distances all count: which comes first is chance.
+  bool is_wanted(const Label& label) const {
+    if (label.distance > reach(label.vertex)) return false;
+    return std::ranges::none_of(heard_[static_cast<std::size_t>(label.vertex)].bones, [&](const Heard& h) {
+      return h.bone == label.bone || (joint_of(h.bone) == joint_of(label.bone) && h.distance < label.distance);
+    });
+  }
+
+  void settle(const Label& label) {
+    auto& [bones, joints, reach] = heard_[static_cast<std::size_t>(label.vertex)];
+    const bool is_new = std::ranges::none_of(bones, [&](const Heard& h) { return joint_of(h.bone) == joint_of(label.bone); });
+    bones.push_back({label.bone, label.distance});
+    if (is_new && ++joints == wanted_.count) reach = label.distance;
+    distances_(label.vertex, label.bone) = label.distance;
+  }
+
+  void forget_unsettled(Eigen::Index v) {
+    distances_.row(v).setConstant(kInfinity);
+    for (const Heard& h : heard_[static_cast<std::size_t>(v)].bones) distances_(v, h.bone) = h.distance;
+  }
+
+  struct OfVertex {
+    std::vector<Heard> bones;  // nearest first
+    int joints = 0;            // that these start at
+    float reach = kInfinity;
+  };
+
+  const TriangleMesh& mesh_;
+  const BodyLines& lines_;
+  std::span<const Segment> bones_;
+  const NearestJoints& wanted_;
+  std::vector<std::vector<Sample>> samples_;
+  Matrix straight_;           // (V,B)
+  IndexMatrix order_;         // (V,B) bones by straight distance
+  std::vector<Sight> sight_;  // (V,B)
+  Matrix distances_;          // (V,B) the shortest way so far
+  std::vector<OfVertex> heard_;
+  std::priority_queue<Label, std::vector<Label>, Later> queue_;
+};
 
 }  // namespace
 
-Matrix volumetric_geodesic_distance(const TriangleMesh& mesh, const VoxelGrid& grid, std::span<const Segment> bones) {
-  assert(!mesh.faces.empty());
+Matrix volumetric_geodesic_distance(const TriangleMesh& mesh, const VoxelGrid& grid, std::span<const Segment> bones,
+                                    const NearestJoints& wanted) {
+  assert(!mesh.faces.empty() && wanted.joint_of.size() == bones.size() && wanted.count > 0);
   const BodyLines lines(mesh, grid);
-  const SurfaceGraph body = body_graph(mesh, lines, kBridge);
-  Matrix distances(mesh.positions.size(), bones.size());
-  parallel_for(bones.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const std::vector<float> column = distances_to(bones[b], mesh, lines, body);
-      distances.col(static_cast<Eigen::Index>(b)) =
-          Eigen::Map<const Eigen::VectorXf>(column.data(), static_cast<Eigen::Index>(column.size()));
-    }
-  });
-  return distances;
+  return Ways(mesh, lines, bones, wanted).run(body_graph(mesh, lines, kBridge));
+}
+
+Matrix volumetric_geodesic_distance(const TriangleMesh& mesh, const VoxelGrid& grid, std::span<const Segment> bones) {
+  std::vector<int> each(bones.size());
+  std::iota(each.begin(), each.end(), 0);
+  return volumetric_geodesic_distance(mesh, grid, bones, {each, std::max(1, static_cast<int>(bones.size()))});
 }
 
 Matrix straight_distance(const TriangleMesh& mesh, std::span<const Segment> bones) {

@@ -66,7 +66,7 @@ double LogisticFit::operator()(std::span<const float> evidence) const {
   return 1.0 / (1.0 + std::exp(-sum));
 }
 
-LogisticFit fit_logistic(std::span<const Outcome> outcomes, double ridge) {
+LogisticFit fit_logistic(std::span<const Outcome> outcomes, Factors allowed, double ridge) {
   assert(!outcomes.empty());
   const auto rows = static_cast<Index>(outcomes.size()), columns = static_cast<Index>(outcomes.front().evidence.size());
   Eigen::MatrixXd evidence(rows, columns);
@@ -77,12 +77,18 @@ LogisticFit fit_logistic(std::span<const Outcome> outcomes, double ridge) {
     success(i) = outcome.success;
   }
   const Standardisation standard(evidence);
-  const Eigen::VectorXd w = newton(design(standard.apply(evidence)), success, ridge);
+  Eigen::MatrixXd known = design(standard.apply(evidence));
+  Eigen::VectorXd w = newton(known, success, ridge);
+  while (allowed == Factors::not_negative && w.head(columns).minCoeff() < 0.0) {
+    for (Index k = 0; k < columns; ++k)
+      if (w(k) < 0.0) known.col(k).setZero();
+    w = newton(known, success, ridge);
+  }
   const Eigen::RowVectorXd factors = w.head(columns).transpose().cwiseProduct(standard.scale);
   return {w(columns) - factors.dot(standard.mean), {factors.data(), factors.data() + columns}};
 }
 
-std::vector<double> cross_validated(std::span<const Outcome> outcomes, double ridge) {
+std::vector<double> cross_validated(std::span<const Outcome> outcomes, Factors allowed, double ridge) {
   std::set<std::size_t> groups;
   for (const Outcome& outcome : outcomes) groups.insert(outcome.group);
   std::vector<double> predicted(outcomes.size());
@@ -90,7 +96,7 @@ std::vector<double> cross_validated(std::span<const Outcome> outcomes, double ri
     std::vector<Outcome> others;
     std::ranges::copy_if(outcomes, std::back_inserter(others), [&](const Outcome& o) { return o.group != group; });
     const LogisticFit fit =
-        others.empty() ? LogisticFit{0.0, std::vector<double>(outcomes.front().evidence.size())} : fit_logistic(others, ridge);
+        others.empty() ? LogisticFit{0.0, std::vector<double>(outcomes.front().evidence.size())} : fit_logistic(others, allowed, ridge);
     for (std::size_t i = 0; i < outcomes.size(); ++i)
       if (outcomes[i].group == group) predicted[i] = fit(outcomes[i].evidence);
   }

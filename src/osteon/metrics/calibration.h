@@ -21,13 +21,16 @@ struct LogisticFit {
   double operator()(std::span<const float> evidence) const;
 };
 
+enum class Factors { any, not_negative };
+
 // The factors that make the outcomes likeliest, by Newton's method (McCullagh, Nelder. Generalized Linear Models. 1989, section 4.4;
 // outcomes between 0 and 1: Papke, Wooldridge 1996). `ridge` times the sum of the squared factors of the standardised evidence is added to
-// the loss, so that few outcomes do not fit too closely. Pre: there are outcomes, all with equally much evidence.
-LogisticFit fit_logistic(std::span<const Outcome> outcomes, double ridge = 1.0);
+// the loss, so that few outcomes do not fit too closely. Not negative: evidence that would speak against success is left out. Pre: there
+// are outcomes, all with equally much evidence.
+LogisticFit fit_logistic(std::span<const Outcome> outcomes, Factors allowed = Factors::any, double ridge = 1.0);
 
 // For every outcome the prediction of a fit to all outcomes but those of its group.
-std::vector<double> cross_validated(std::span<const Outcome> outcomes, double ridge = 1.0);
+std::vector<double> cross_validated(std::span<const Outcome> outcomes, Factors allowed = Factors::any, double ridge = 1.0);
 
 struct ReliabilityBin {
   double predicted, success;  // means; NaN where the bin is empty

@@ -28,8 +28,9 @@ struct JointExtractionOptions {
   float step = 0.3f;              // of the mean shift
   float min_attention = 1e-3f;    // candidates below are ignored
   float expected_joints = 20.0f;  // about how many there are: where there are few, each gathers more
-  float min_share = 0.016f;       // one of 20 joints gathers at least this share of all attention within the default bandwidth (of J: times
-                             // the root of 20/J); less within a finer one (by the square) and more within a coarser one (in proportion)
+  float min_share =
+      0.016f;  // one of 20 joints gathers at least this share of all attention within the default bandwidth (of J: times
+               // the root of 20/J); less within a finer one (by the power of 2.5) and more within a coarser one (in proportion)
   float spread_share = 0.02f;    // of a joint that is found only with twice the bandwidth, among the votes that no other joint explains
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
                                  // other side's attention

@@ -2,11 +2,11 @@
 #include "osteon/pipelines/mean_shift.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <numeric>
 
 #include "osteon/base/parallel.h"
-#include "osteon/pipelines/kernel_lanes.h"
+#include "osteon/pipelines/kernel_sums.h"
 #include "osteon/pipelines/point_grid.h"
 
 namespace osteon::pipelines {
@@ -14,20 +14,16 @@ namespace {
 
 constexpr std::size_t kCellsPerTask = 4;
 
-// The kernel sums at one place.
-struct Sums {
-  float weight = 0.0f;           // sum k
-  Vec3f moment = Vec3f::Zero();  // sum k (x_i - x_j): relative, so that far from the origin nothing is lost
-};
-
-Sums sums_at(const Vec3f& p, const PointGrid& grid, const std::vector<PointGrid::Run>& runs, float h2) {
-  KernelLanes lanes;
-  for (const PointGrid::Run& run : runs) {
-    const auto [x, y, z, weight, count] = grid.columns(run);
-    add_kernel({x, y, z, weight, count}, {p.x(), p.y(), p.z()}, h2, lanes);
+KernelSums sums_at(const Vec3f& p, const PointGrid& grid, const std::vector<PointGrid::Column>& columns, float h2) {
+  static_assert(PointGrid::kPadding >= kLanes);
+  const PointGrid::Gaps gaps = grid.gaps(p);
+  std::array<KernelSources, PointGrid::kColumns> near;
+  std::size_t count = 0;
+  for (const PointGrid::Column& column : columns) {
+    const PointGrid::Run run = PointGrid::within_reach(column, gaps);
+    if (run.begin < run.end) near[count++] = grid.sources(run);
   }
-  const auto total = [](const std::array<float, kLanes>& lane) { return std::accumulate(lane.begin(), lane.end(), 0.0f); };
-  return {total(lanes.k), {total(lanes.x), total(lanes.y), total(lanes.z)}};
+  return kernel_sums({near.data(), count}, {p.x(), p.y(), p.z()}, h2);
 }
 
 std::vector<Vec3f> with_images(std::span<const Vec3f> points, Mirror mirror) {
@@ -49,11 +45,11 @@ void for_each_sum(std::span<const Vec3f> points, std::span<const float> weights,
   const PointGrid grid(with_images(points, mirror), doubled(weights, mirror), bandwidth);
   parallel_for(grid.cells(), kCellsPerTask, [&](std::size_t first, std::size_t last) {
     for (std::size_t cell = first; cell < last; ++cell) {
-      const auto runs = grid.around(cell);
+      const auto columns = grid.around(cell);
       const auto [begin, end] = grid.points_of(cell);
       for (std::uint32_t place = begin; place < end; ++place)
         if (const std::uint32_t i = grid.original(place); i < points.size())
-          visit(i, sums_at(grid.position(place), grid, runs, bandwidth * bandwidth));
+          visit(i, sums_at(grid.position(place), grid, columns, bandwidth * bandwidth));
     }
   });
 }
@@ -61,8 +57,8 @@ void for_each_sum(std::span<const Vec3f> points, std::span<const float> weights,
 // Moves every point once; returns the longest move.
 float shift(std::vector<Vec3f>& points, std::span<const float> weights, Mirror mirror, const MeanShiftOptions& options) {
   std::vector<Vec3f> moves(points.size(), Vec3f::Zero());
-  for_each_sum(points, weights, mirror, options.bandwidth, [&](std::size_t i, const Sums& s) {
-    if (s.weight > 0.0f) moves[i] = options.step * s.moment / s.weight;
+  for_each_sum(points, weights, mirror, options.bandwidth, [&](std::size_t i, const KernelSums& s) {
+    if (s.k > 0.0f) moves[i] = options.step * Vec3f(s.x, s.y, s.z) / s.k;
   });
   float longest = 0.0f;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -88,7 +84,7 @@ MeanShiftResult mean_shift(std::span<const Vec3f> points, std::span<const float>
 std::vector<float> kernel_density(std::span<const Vec3f> points, std::span<const float> weights, Mirror mirror, float bandwidth) {
   std::vector<float> density(points.size(), 0.0f);
   const float scale = 1.0f / (bandwidth * bandwidth);
-  for_each_sum(points, weights, mirror, bandwidth, [&](std::size_t i, const Sums& s) { density[i] = scale * s.weight; });
+  for_each_sum(points, weights, mirror, bandwidth, [&](std::size_t i, const KernelSums& s) { density[i] = scale * s.k; });
   return density;
 }
 

@@ -23,6 +23,11 @@ std::uint64_t cell_key(const Vec3f& p, float cell) {
   return part(0) * kStepX + part(1) * kStepY + part(2);
 }
 
+// The lowest of the three cells in one of the nine columns around a cell: column 3 (dx + 1) + dy + 1.
+std::uint64_t first_key(std::uint64_t cell, std::size_t column) {
+  return cell + column / 3 * kStepX + column % 3 * kStepY - kStepX - kStepY - 1;
+}
+
 // The indices of the keys, ascending; equal keys in the order of their indices. By counting where the keys' coordinates span a small box.
 std::vector<std::uint32_t> ascending(const std::vector<std::uint64_t>& keys) {
   std::vector<std::uint32_t> order(keys.size());
@@ -55,11 +60,12 @@ std::vector<std::uint32_t> ascending(const std::vector<std::uint64_t>& keys) {
 
 }  // namespace
 
-PointGrid::PointGrid(std::span<const Vec3f> points, std::span<const float> weights, float cell) {
+PointGrid::PointGrid(std::span<const Vec3f> points, std::span<const float> weights, float cell) : cell_(cell) {
   assert(points.size() == weights.size());
   std::vector<std::uint64_t> key_of(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) key_of[i] = cell_key(points[i], cell);
   order_ = ascending(key_of);
+  for (std::vector<float>* column : {&x_, &y_, &z_, &weights_}) column->reserve(order_.size() + kPadding);
   for (std::uint32_t place = 0; place < order_.size(); ++place) {
     const std::uint32_t i = order_[place];
     if (keys_.empty() || keys_.back() != key_of[i]) {
@@ -72,19 +78,46 @@ PointGrid::PointGrid(std::span<const Vec3f> points, std::span<const float> weigh
     weights_.push_back(weights[i]);
   }
   starts_.push_back(static_cast<std::uint32_t>(order_.size()));
+  for (std::vector<float>* column : {&x_, &y_, &z_, &weights_}) column->resize(order_.size() + kPadding, 0.0f);
+
+  columns_.resize(keys_.size());
+  for (std::size_t c = 0; c < kColumns; ++c)
+    for (std::size_t i = 0, first = 0; i < keys_.size(); ++i) {  // as the cells' keys rise, so do those around them
+      while (first < keys_.size() && keys_[first] < first_key(keys_[i], c)) ++first;
+      columns_[i][c] = static_cast<std::uint32_t>(first);
+    }
 }
 
-std::vector<PointGrid::Run> PointGrid::around(std::size_t cell) const {
-  std::vector<Run> runs;
-  for (int dx = -1; dx <= 1; ++dx)
-    for (int dy = -1; dy <= 1; ++dy) {
-      const std::uint64_t middle = keys_[cell] + static_cast<std::uint64_t>(dx) * kStepX + static_cast<std::uint64_t>(dy) * kStepY;
-      const auto first = std::lower_bound(keys_.begin(), keys_.end(), middle - 1) - keys_.begin();
-      const auto last = std::upper_bound(keys_.begin() + first, keys_.end(), middle + 1) - keys_.begin();
-      const Run run{starts_[static_cast<std::size_t>(first)], starts_[static_cast<std::size_t>(last)]};
-      if (run.begin < run.end) runs.push_back(run);
+std::vector<PointGrid::Column> PointGrid::around(std::size_t cell) const {
+  std::vector<Column> columns;
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    const std::uint64_t lowest = first_key(keys_[cell], c);
+    std::size_t next = columns_[cell][c];
+    Column column{c, {}};
+    for (std::size_t i = 0; i < column.starts.size(); ++i) {
+      while (next < keys_.size() && keys_[next] < lowest + i) ++next;
+      column.starts[i] = starts_[next];
     }
-  return runs;
+    if (column.starts.front() < column.starts.back()) columns.push_back(column);
+  }
+  return columns;
+}
+
+PointGrid::Gaps PointGrid::gaps(const Vec3f& p) const {
+  Gaps out{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float below = p[axis] / cell_ - std::floor(p[axis] / cell_), above = 1.0f - below;
+    out[static_cast<std::size_t>(axis)] = {below * below, 0.0f, above * above};
+  }
+  return out;
+}
+
+PointGrid::Run PointGrid::within_reach(const Column& column, const Gaps& gaps) {
+  constexpr float kReach = 1.0f + 1e-4f;  // rounding must not leave out what is within reach
+  const float across = gaps[0][column.number / 3] + gaps[1][column.number % 3];
+  const auto& [below, here, above, end] = column.starts;
+  if (across > kReach) return {here, here};
+  return {across + gaps[2][0] <= kReach ? below : here, across + gaps[2][2] <= kReach ? end : above};
 }
 
 }  // namespace osteon::pipelines

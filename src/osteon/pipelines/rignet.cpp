@@ -265,9 +265,14 @@ std::vector<Bone> normalised_bones(const Skeleton& skeleton, const geometry::Nor
 
 Matrix distances_to(const std::vector<Bone>& bones, const Body& body, const Ablation& ablation) {
   std::vector<Segment> segments;
-  for (const Bone& b : bones) segments.push_back(b.segment);
+  std::vector<int> starts;
+  for (const Bone& b : bones) {
+    segments.push_back(b.segment);
+    starts.push_back(static_cast<int>(b.start));
+  }
   if (!ablation.geodesic) return geometry::straight_distance(body.working.mesh, segments);
-  return geometry::volumetric_geodesic_distance(body.working.mesh, body.voxels, segments);
+  const int count = std::max(ablation.bones, geometry::kSkinBones);
+  return geometry::volumetric_geodesic_distance(body.working.mesh, body.voxels, segments, {starts, count});
 }
 
 // What the binding network reads of every vertex and the bones near it.

@@ -170,7 +170,7 @@ std::vector<double> score(Task task, const Subject& subject, const infer::Rignet
 Tables evaluate_split(const EvaluateArguments& arguments) {
   const auto models = arguments.models.load();
   if (arguments.task == "skin-methods")
-    return {skin_methods_table(arguments.data, arguments.split, models, infer::NeuroskinningModel::load(), kSkinColumns)};
+    return {skin_methods_table(arguments.data, arguments.split, models, kSkinColumns)};
   Tables tables{{"skeleton", kSkeletonColumns, {}, {}},
                 {"skin, skeleton given", kSkinColumns, {}, {}},
                 {"connectivity, joints given", kConnectivityColumns, {}, {}}};
@@ -257,7 +257,7 @@ void add_study_options(CLI::App& command, EvaluateArguments& arguments) {
           ->capture_default_str(),
       command.add_option("--spread-share", options.extraction.spread_share, "The same for joints whose votes are spread")
           ->capture_default_str(),
-      command.add_option("--prune", options.skin.prune_share, "Weights below this share of a vertex's largest go")->capture_default_str(),
+      command.add_option("--prune", options.skin.prune_share, "Weights below this share of a vertex's largest go"),
       command.add_option("--max-influences", options.skin.max_influences, "Joints that may move a vertex")->capture_default_str(),
       command.add_option("--bones", options.ablation.bones, "Nearest bones that a vertex chooses from")->capture_default_str(),
       command.add_option("--without", arguments.without, "Leave out parts of the method, separated by commas")

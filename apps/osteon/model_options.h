@@ -46,9 +46,8 @@ struct ModelOptions {
 #endif
     return infer::RignetModels::load(weights, precision);
   }
-  // Those of NeuroSkinning: the same options, but another default.
   infer::NeuroskinningModel load_neuroskinning() const {
-    return infer::NeuroskinningModel::load(folder ? *folder : infer::find_models(name == "rignet" ? "neuroskinning" : name), precision);
+    return infer::NeuroskinningModel::load(folder ? *folder : infer::find_models(name), precision);
   }
 };
 

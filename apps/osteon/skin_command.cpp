@@ -89,9 +89,10 @@ skin::Binding bound(const SkinArguments& arguments, const io::Asset& body, const
   if (arguments.deform_islands) options.bind.islands = skin::Islands::deform;
   lock_joints(arguments, body, skeleton, options.bind);
   if (arguments.from) options.bind.from = load_rig(*arguments.from);
-  if (arguments.method == "rignet") {
+  if (arguments.method == "rignet" || arguments.method == "networks") {
     const infer::RignetModels models = arguments.models.load();
     options.rignet = &models;
+    if (arguments.method == "networks") options.neuroskinning = models.neuroskinning();
     return pipelines::skin_character(body.mesh, skeleton, options);
   }
   if (arguments.method == "neuroskinning") {
@@ -142,12 +143,12 @@ void skin_body(const SkinArguments& arguments) {
 }
 
 void add_method_options(CLI::App& command, SkinArguments& arguments) {
-  std::vector<std::string> names{"rignet", "neuroskinning"};
+  std::vector<std::string> names{"networks", "rignet", "neuroskinning"};
   for (const auto& [name, method] : kMethods) names.push_back(name);
   command
       .add_option("--method", arguments.method,
                   "How to bind: geodesic voxels, bone heat, biharmonic, nearest bone, another mesh's weights, or networks (RigNet's, "
-                  "NeuroSkinning's)")
+                  "NeuroSkinning's, or both heard together as `rig` does)")
       ->check(CLI::IsMember(names))
       ->capture_default_str();
   command.add_option("--from", arguments.from, "For --method transfer: the rigged mesh whose weights to take")->type_name("FILE");

@@ -17,22 +17,23 @@ struct NamedMethod {
   const char* name;
   std::optional<skin::Method> method;  // empty: networks
 };
-constexpr std::array<NamedMethod, 6> kMethods{{{"rigid", skin::Method::rigid},
+constexpr std::array<NamedMethod, 7> kMethods{{{"rigid", skin::Method::rigid},
                                                {"geovoxel", skin::Method::geovoxel},
                                                {"heat", skin::Method::heat},
                                                {"biharmonic", skin::Method::biharmonic},
                                                {"rignet", std::nullopt},
-                                               {"neuroskinning", std::nullopt}}};
+                                               {"neuroskinning", std::nullopt},
+                                               {"networks", std::nullopt}}};
 
-SkinWeights weights_by(const NamedMethod& method, const Rig& rig, const infer::RignetModels& models,
-                       const infer::NeuroskinningModel& neuroskinning) {
+SkinWeights weights_by(const NamedMethod& method, const Rig& rig, const infer::RignetModels& models) {
   pipelines::SkinCharacterOptions options;
   if (method.method)
     options.bind.method = *method.method;
-  else if (std::string_view(method.name) == "rignet")
-    options.rignet = &models;
-  else
-    options.neuroskinning = &neuroskinning;
+  else {
+    const std::string_view name = method.name;
+    if (name != "neuroskinning") options.rignet = &models;
+    if (name != "rignet") options.neuroskinning = models.neuroskinning();
+  }
   SkinWeights weights = pipelines::skin_character(rig.mesh, rig.skeleton, options).weights;
   validate(weights, rig.mesh.positions.size(), rig.skeleton.size());
   return weights;
@@ -43,7 +44,8 @@ std::vector<double> values(const metrics::SkinScores& s) { return {s.precision, 
 }  // namespace
 
 metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const std::string& split, const infer::RignetModels& models,
-                                       const infer::NeuroskinningModel& neuroskinning, const std::vector<metrics::ScoreColumn>& columns) {
+                                       const std::vector<metrics::ScoreColumn>& columns) {
+  if (!models.neuroskinning()) throw Error("skin-methods: the models have no neuroskinning.safetensors, expected all networks");
   struct Outcome {
     std::vector<metrics::ScoreRow> rows;
     std::vector<std::string> failures;
@@ -54,7 +56,7 @@ metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const 
       data, split, [&](std::size_t count) { outcomes.resize(count); },
       [&](std::size_t i, const Subject& subject) {
         for (const NamedMethod& method : kMethods) try {
-            const SkinWeights weights = weights_by(method, subject.rig, models, neuroskinning);
+            const SkinWeights weights = weights_by(method, subject.rig, models);
             outcomes[i].rows.push_back({subject.info.id, method.name, values(subject.reference.skin_scores(weights))});
           } catch (const Error& e) {
             outcomes[i].failures.push_back(fmt::format("{}: {}: {}", subject.info.id, method.name, e.what()));

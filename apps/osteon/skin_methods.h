@@ -5,15 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "osteon/infer/neuroskinning.h"
 #include "osteon/infer/rignet.h"
 #include "osteon/metrics/score_table.h"
 
 namespace osteon::app {
 
 // Every method's skin for the reference's skeleton, on the characters of a split. The "category" of a row is the method.
-// Columns: precision, recall, L1, mean and max distance.
+// Columns: precision, recall, L1, mean and max distance. Throws Error where the models have no NeuroSkinning.
 metrics::ScoreTable skin_methods_table(const std::filesystem::path& data, const std::string& split, const infer::RignetModels& models,
-                                       const infer::NeuroskinningModel& neuroskinning, const std::vector<metrics::ScoreColumn>& columns);
+                                       const std::vector<metrics::ScoreColumn>& columns);
 
 }  // namespace osteon::app

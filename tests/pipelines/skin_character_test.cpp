@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "osteon/mesh/shapes.h"
 #include "osteon/pipelines/skeleton_fit.h"
 #include "osteon/pipelines/skin_quality.h"
 #include "osteon/synth/character.h"
@@ -43,6 +44,40 @@ TEST(SkinCharacter, mirror_says_so_where_nothing_is_symmetric) {
   options.bind.resolution = 32;
   options.mirror = true;
   EXPECT_THAT(test::error_of([&] { skin_character(rig.mesh, rig.skeleton, options); }), testing::HasSubstr("mirror"));
+}
+
+// A bracelet of one piece: nearly all of it is its arm's, but the networks say so of each vertex by itself.
+TEST(SkinCharacter, by_networks_a_small_island_follows_one_joint) {
+  static const auto models = infer::RignetModels::load();
+  const Rig rig = biped();
+  const auto bone_list = bones(rig.skeleton);
+  const auto arm = std::ranges::max_element(bone_list, {}, [](const Bone& b) { return b.end ? std::abs(b.segment.b.x()) : 0.0f; });
+  const std::size_t body = rig.mesh.positions.size();
+  const TriangleMesh bead =
+      shapes::transformed(shapes::icosphere(2, 0.02f), Transform(Eigen::Translation3f(0.5f * (arm->segment.a + arm->segment.b))));
+  const TriangleMesh mesh = shapes::merged(rig.mesh, bead);
+  for (const bool both : {false, true}) {
+    SkinCharacterOptions options{.rignet = &models, .neuroskinning = both ? models.neuroskinning() : nullptr};
+    const skin::Binding rigid = skin_character(mesh, rig.skeleton, options);
+    validate(rigid.weights, mesh.positions.size(), rig.skeleton.size());
+    const JointId joint = rigid.weights[static_cast<VertexId>(body)].front().joint;
+    for (std::size_t v = body; v < mesh.positions.size(); ++v) {
+      ASSERT_EQ(rigid.weights[static_cast<VertexId>(v)].size(), 1u);
+      EXPECT_EQ(rigid.weights[static_cast<VertexId>(v)].front().joint, joint);
+    }
+  }
+}
+
+TEST(SkinCharacter, networks_heard_together_differ_from_either_and_are_valid) {
+  static const auto models = infer::RignetModels::load();
+  const Rig rig = biped();
+  ASSERT_NE(models.neuroskinning(), nullptr);
+  const SkinWeights one = skin_character(rig.mesh, rig.skeleton, {.rignet = &models}).weights,
+                    other = skin_character(rig.mesh, rig.skeleton, {.neuroskinning = models.neuroskinning()}).weights,
+                    both = skin_character(rig.mesh, rig.skeleton, {.rignet = &models, .neuroskinning = models.neuroskinning()}).weights;
+  validate(both, rig.mesh.positions.size(), rig.skeleton.size());
+  EXPECT_NE(both, one);
+  EXPECT_NE(both, other);
 }
 
 TEST(SkinQuality, a_skin_by_its_own_bones_leaks_less_than_one_by_any) {

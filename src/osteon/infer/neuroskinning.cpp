@@ -17,7 +17,7 @@ struct NeuroskinningModel::Loaded {
   std::unique_ptr<Onednn> backend;
 };
 
-NeuroskinningModel NeuroskinningModel::load() { return load(find_models("neuroskinning")); }
+NeuroskinningModel NeuroskinningModel::load() { return load(find_models("rignet")); }
 
 NeuroskinningModel NeuroskinningModel::load(const fs::path& folder, tensor::Precision precision) {
   if (precision == tensor::Precision::bf16 && !tensor::has_bf16())

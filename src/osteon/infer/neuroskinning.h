@@ -18,7 +18,7 @@ class NeuroskinningModel {
   // From neuroskinning.safetensors, ours, or neuroskinning_2019.safetensors, the paper's, float32 or float16. Throws Error where neither is
   // in the folder, where parameters do not fit, or where the file has no super skeleton in its metadata.
   static NeuroskinningModel load(const std::filesystem::path& folder, tensor::Precision precision = tensor::Precision::f32);
-  static NeuroskinningModel load();  // from where find_models("neuroskinning") says
+  static NeuroskinningModel load();  // from where find_models("rignet") says
 
   ~NeuroskinningModel();
   NeuroskinningModel(NeuroskinningModel&&) noexcept;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ namespace osteon::infer {
 
 struct RignetModels::Networks {
   std::array<std::unique_ptr<NetworkRunner>, nets::rignet::kNetworks.size()> by_network;  // those that are not in the folder are empty
+
+  std::optional<NeuroskinningModel> neuroskinning;
 
   bool has(nets::rignet::Network network) const { return by_network[static_cast<std::size_t>(network)] != nullptr; }
   Matrix run(nets::rignet::Network network, const NetworkInput& input) const {
@@ -158,20 +161,30 @@ RignetModels RignetModels::load() { return load(find_models("rignet")); }
 RignetModels RignetModels::load(const fs::path& folder, tensor::Precision precision) {
   if (precision == tensor::Precision::bf16 && !tensor::has_bf16())
     throw Error("this processor does not multiply bf16 (AVX512-BF16 or AMX), expected --precision f32");
-  return load(folder,
-              [&](Network network, const fs::path& weights) { return std::make_unique<OnednnRunner>(network, weights, precision); });
+  const auto make_runner = [&](Network network, const fs::path& weights) {
+    return std::make_unique<OnednnRunner>(network, weights, precision);
+  };
+  return RignetModels(load_networks(folder, make_runner, precision));
 }
 
 RignetModels RignetModels::load(const fs::path& folder, const RunnerFactory& make_runner) {
+  return RignetModels(load_networks(folder, make_runner, tensor::Precision::f32));
+}
+
+std::unique_ptr<RignetModels::Networks> RignetModels::load_networks(const fs::path& folder, const RunnerFactory& make_runner,
+                                                                    tensor::Precision precision) {
   const std::vector<Network> present = networks_in(folder);
   auto networks = std::make_unique<Networks>();
+  if (fs::exists(file_of(folder, Network::neuroskinning))) networks->neuroskinning = NeuroskinningModel::load(folder, precision);
   parallel_for(present.size(), 1, [&](std::size_t i, std::size_t) {
     auto runner = make_runner(present[i], file_of(folder, present[i]));
     pack_weights(*runner);
     networks->by_network[static_cast<std::size_t>(present[i])] = std::move(runner);
   });
-  return RignetModels(std::move(networks));
+  return networks;
 }
+
+const NeuroskinningModel* RignetModels::neuroskinning() const { return networks_->neuroskinning ? &*networks_->neuroskinning : nullptr; }
 
 RignetModels::RignetModels(std::unique_ptr<Networks> networks) : networks_(std::move(networks)) {}
 RignetModels::~RignetModels() = default;

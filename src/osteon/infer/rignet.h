@@ -8,6 +8,7 @@
 
 #include "osteon/base/types.h"
 #include "osteon/infer/networks.h"
+#include "osteon/infer/neuroskinning.h"
 #include "osteon/nets/graph.h"
 #include "osteon/tensor/precision.h"
 
@@ -36,8 +37,9 @@ struct JointVotes {
 class RignetModels {
  public:
   // From {votes,tree,bind}.safetensors, float32 or float16. The paper's networks may be there instead: joints and attention for votes,
-  // bones and root for tree, skin for bind. Throws one Error that names each missing file, or each parameter of a file that does not fit.
-  // Throws Error where products in bf16 are asked for and this processor has none.
+  // bones and root for tree, skin for bind. neuroskinning.safetensors is read too where it is there. Throws one Error that names each
+  // missing file, or each parameter of a file that does not fit. Throws Error where products in bf16 are asked for and this processor has
+  // none.
   static RignetModels load(const std::filesystem::path& folder, tensor::Precision precision = tensor::Precision::f32);
   // By other means than oneDNN on the CPU (torch_infer/torch_runner.h). `make_runner` may be called by several threads at once.
   static RignetModels load(const std::filesystem::path& folder, const RunnerFactory& make_runner);
@@ -74,8 +76,12 @@ class RignetModels {
   using NearestBones = Eigen::Ref<const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
   Matrix skin_weights(const nets::MeshArrays& mesh, const Matrix& features, const NearestBones& nearest) const;
 
+  const NeuroskinningModel* neuroskinning() const;  // null where the folder has none
+
  private:
   struct Networks;
+  static std::unique_ptr<Networks> load_networks(const std::filesystem::path& folder, const RunnerFactory& make_runner,
+                                                 tensor::Precision precision);
   explicit RignetModels(std::unique_ptr<Networks> networks);
   std::unique_ptr<Networks> networks_;
 };

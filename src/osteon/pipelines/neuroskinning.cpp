@@ -8,6 +8,7 @@
 #include "osteon/infer/rignet.h"
 #include "osteon/pipelines/body_frame.h"
 #include "osteon/rig/coincident_joints.h"
+#include "osteon/skin/islands.h"
 #include "osteon/skin/neuro_features.h"
 #include "osteon/skin/weight_cleanup.h"
 
@@ -28,29 +29,23 @@ bool is_reversed(const Skeleton& skeleton) {
   return left < 0.0f;
 }
 
-// The body as the networks read it: its own frame, normalised, one joint in a place.
+// Mesh and skeleton as the networks read them: left at +x, one joint in a place.
 struct Body {
-  geometry::WorkingMesh working;
-  geometry::Neighbourhoods ring;
+  TriangleMesh mesh;
   nets::MeshArrays graph;
   std::vector<Vec3f> normals;
   MergedSkeleton merged;
-
-  const TriangleMesh& mesh() const { return working.mesh; }
 };
 
-Body study(const TriangleMesh& mesh, const Skeleton& skeleton, const NeuroskinningOptions& options) {
+Body study(const TriangleMesh& mesh, const geometry::Neighbourhoods& ring, const Skeleton& skeleton) {
+  Eigen::Matrix3f turn = Eigen::Matrix3f::Identity();
+  if (is_reversed(skeleton)) turn = Eigen::Vector3f(-1.0f, 1.0f, -1.0f).asDiagonal();
   Body body;
-  Eigen::Matrix3f turn = body_frame(mesh, Up::automatic).turn;
-  if (is_reversed(turned(skeleton, turn))) turn = Eigen::Vector3f(-1.0f, 1.0f, -1.0f).asDiagonal() * turn;
-  body.working = geometry::make_working_mesh(turned(mesh, turn), options.working_mesh);
-  body.ring = geometry::one_ring(body.mesh());
-  const geometry::Neighbourhoods none{std::vector<std::uint32_t>(body.ring.offsets.size(), 0), {}};
-  body.graph = infer::single_mesh(body.mesh().positions.raw(), {body.ring.offsets, body.ring.members}, {none.offsets, none.members});
-  body.normals = vertex_normals(body.mesh()).raw();
-  Skeleton placed = turned(skeleton, turn);
-  for (Vec3f& p : placed.rest_positions) p = body.working.normalization.apply(p);
-  body.merged = merge_coincident_joints(placed, kSamePlace);
+  body.mesh = turned(mesh, turn);
+  const geometry::Neighbourhoods none{std::vector<std::uint32_t>(ring.offsets.size(), 0), {}};
+  body.graph = infer::single_mesh(body.mesh.positions.raw(), {ring.offsets, ring.members}, {none.offsets, none.members});
+  body.normals = vertex_normals(body.mesh).raw();
+  body.merged = merge_coincident_joints(turned(skeleton, turn), kSamePlace);
   return body;
 }
 
@@ -85,11 +80,11 @@ Matrix finite(Matrix logits, std::vector<std::string>& warnings) {
 
 // Softmax over the joints that each vertex may choose, in the joints of the original, (V,J).
 Matrix joint_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
-                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, const skin::BoneChoiceOptions& options,
+                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, const NeuroskinningOptions& options,
                      std::vector<std::string>& warnings) {
-  const skin::BoneChoices choices = skin::bone_choices(body.mesh(), body.merged.skeleton, options);
+  const skin::BoneChoices choices = skin::bone_choices(body.mesh, body.merged.skeleton, options.choices);
   const skin::ChoiceRows rows =
-      skin::choice_rows(body.mesh().positions.raw(), body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
+      skin::choice_rows(body.mesh.positions.raw(), body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
   neuro.choices.add(rows.features, rows.offsets, rows.joints);
   neuro.joints = rows.joint_features;
   const Matrix logits = finite(model(body.graph, neuro), warnings);
@@ -97,14 +92,18 @@ Matrix joint_weights(const Body& body, const Owners& owners, const infer::Neuros
   for (Eigen::Index v = 0; v < out.rows(); ++v) {
     const auto first = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v)]);
     const auto last = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v) + 1]);
-    const auto logit = [&](std::size_t row) { return logits(static_cast<Eigen::Index>(row), 0) + rows.log_shares[row]; };
-    float largest = logit(first), total = 0.0f;
-    for (std::size_t row = first; row < last; ++row) largest = std::max(largest, logit(row));
-    for (std::size_t row = first; row < last; ++row) total += std::exp(logit(row) - largest);
-    for (std::size_t row = first; row < last; ++row) {
-      const auto bone = static_cast<std::size_t>(choices.nearest(v, static_cast<Eigen::Index>(row - first)));
-      out(v, static_cast<Eigen::Index>(index(owners.of_bone(choices.bones, bone)))) += std::exp(logit(row) - largest) / total;
-    }
+    const auto add = [&](float share, float of_network) {
+      const auto logit = [&](std::size_t row) { return of_network * logits(static_cast<Eigen::Index>(row), 0) + rows.log_shares[row]; };
+      float largest = logit(first), total = 0.0f;
+      for (std::size_t row = first; row < last; ++row) largest = std::max(largest, logit(row));
+      for (std::size_t row = first; row < last; ++row) total += std::exp(logit(row) - largest);
+      for (std::size_t row = first; row < last; ++row) {
+        const auto bone = static_cast<std::size_t>(choices.nearest(v, static_cast<Eigen::Index>(row - first)));
+        out(v, static_cast<Eigen::Index>(index(owners.of_bone(choices.bones, bone)))) += share * std::exp(logit(row) - largest) / total;
+      }
+    };
+    add(1.0f - options.geometric_share, 1.0f);
+    if (options.geometric_share > 0.0f) add(options.geometric_share, 0.0f);
   }
   return out;
 }
@@ -113,7 +112,7 @@ Matrix joint_weights(const Body& body, const Owners& owners, const infer::Neuros
 Matrix slot_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, std::vector<std::string>& warnings) {
   const Skeleton& skeleton = body.merged.skeleton;
-  neuro.features = skin::slot_rows(body.mesh().positions.raw(), body.normals, skeleton, super, assignment, nets::neuro_slots);
+  neuro.features = skin::slot_rows(body.mesh.positions.raw(), body.normals, skeleton, super, assignment, nets::neuro_slots);
   const Matrix logits = finite(model(body.graph, neuro), warnings);
   Matrix out = Matrix::Constant(logits.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()), kAbsent);
   std::vector<bool> taken(super.slots().size(), false);
@@ -131,23 +130,34 @@ Matrix slot_weights(const Body& body, const Owners& owners, const infer::Neurosk
 
 }  // namespace
 
-NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skeleton& skeleton, const infer::NeuroskinningModel& model,
-                                          const NeuroskinningOptions& options) {
-  NeuroskinningResult result;
-  const Body body = study(mesh, skeleton, options);
-  result.repairs = body.working.clean.repairs;
+Matrix neuroskinning_rows(const TriangleMesh& mesh, const geometry::Neighbourhoods& ring, const Skeleton& skeleton,
+                          const infer::NeuroskinningModel& model, const NeuroskinningOptions& options, std::vector<std::string>& warnings) {
+  const Body body = study(mesh, ring, skeleton);
   const skin::SuperSkeleton super = skin::SuperSkeleton::from_json(model.super_skeleton());
   const skin::SlotAssignment assignment = super.assign(body.merged.skeleton);
   nets::NeuroArrays neuro;
-  const auto near = geometry::geodesic_balls(body.mesh(), kPoolReach, nets::neuro_pooling.back() - 1).members;
+  const auto near = geometry::geodesic_balls(body.mesh, kPoolReach, nets::neuro_pooling.back() - 1).members;
   neuro.add_nearest(near.offsets, near.members, 0);
   const Owners owners(skeleton, body.merged);
-  Matrix weights = model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment, result.warnings)
-                                     : joint_weights(body, owners, model, neuro, super, assignment, options.choices, result.warnings);
-  for (int round = 0; round < options.smooth; ++round) weights = skin::smooth_rows(weights, body.ring);
+  return model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment, warnings)
+                           : joint_weights(body, owners, model, neuro, super, assignment, options, warnings);
+}
+
+NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skeleton& skeleton, const infer::NeuroskinningModel& model,
+                                          const NeuroskinningOptions& options) {
+  NeuroskinningResult result;
+  const Eigen::Matrix3f turn = body_frame(mesh, Up::automatic).turn;
+  const geometry::WorkingMesh working = geometry::make_working_mesh(turned(mesh, turn), options.working_mesh);
+  const geometry::Neighbourhoods ring = geometry::one_ring(working.mesh);
+  result.repairs = working.clean.repairs;
+  Skeleton placed = turned(skeleton, turn);
+  for (Vec3f& p : placed.rest_positions) p = working.normalization.apply(p);
+  Matrix weights = neuroskinning_rows(working.mesh, ring, placed, model, options, result.warnings);
+  for (int round = 0; round < options.smooth; ++round) weights = skin::smooth_rows(weights, ring);
   skin::prune_rows(weights, options.prune_share, options.max_influences);
-  skin::fill_empty_rows(weights, body.mesh().positions, body.ring);
-  result.weights = skin::weights_on_original(weights, geometry::carry_back(body.working), options.max_influences);
+  skin::fill_empty_rows(weights, working.mesh.positions, ring);
+  result.weights = skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
+  if (options.rigid_islands) result.rigid_islands = skin::make_islands_rigid(result.weights, working.clean);
   return result;
 }
 

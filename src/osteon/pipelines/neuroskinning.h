@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "osteon/geometry/neighbourhoods.h"
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/infer/neuroskinning.h"
 #include "osteon/rig/skeleton.h"
@@ -13,17 +14,25 @@
 namespace osteon::pipelines {
 
 struct NeuroskinningOptions {
+  float geometric_share = 0.33f;   // of geodesic voxel binding's own weights in the mean with the network's
   float prune_share = 0.15f;       // weights below this share of a vertex's largest go
   std::size_t max_influences = 4;  // the paper's kappa
   int smooth = 0;                  // rounds over the working mesh's one-ring
+  bool rigid_islands = true;       // small parts that hang together with nothing else follow one joint (skin/islands.h)
   geometry::WorkingMeshOptions working_mesh = {};
   skin::BoneChoiceOptions choices = {};
 };
 
 struct NeuroskinningResult {
-  SkinWeights weights;  // one row per vertex of the mesh that was given, in its order
+  SkinWeights weights;            // one row per vertex of the mesh that was given, in its order
+  std::size_t rigid_islands = 0;  // how many were made so
   std::vector<std::string> warnings, repairs;
 };
+
+// Weights that are not finished, (V,J), rows sum to 1, for a normalised working mesh with its one-ring and a skeleton in the same frame,
+// upright. Where the joints' names have left at -x, the network is shown both turned by 180 degrees.
+Matrix neuroskinning_rows(const TriangleMesh& mesh, const geometry::Neighbourhoods& ring, const Skeleton& skeleton,
+                          const infer::NeuroskinningModel& model, const NeuroskinningOptions& options, std::vector<std::string>& warnings);
 
 // Liu and others, NeuroSkinning, 2019: skin weights for a skeleton that is given. mesh -> its own frame, the left side by the joints' names
 // at +x -> working mesh -> joints onto the slots of the super skeleton -> network -> weights on the mesh that was given. Joints at one

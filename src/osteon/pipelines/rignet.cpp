@@ -34,7 +34,7 @@ class Stages {
 
   template <class Work>
   auto run(std::string_view name, const Work& work) {
-    constexpr double kStages = 17.0;
+    constexpr double kStages = 18.0;
     if (progress_) progress_(name, static_cast<double>(report_.stages.size()) / kStages);
     const auto start = std::chrono::steady_clock::now();
     auto result = work();
@@ -316,6 +316,16 @@ Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const
   return skin::distance_weights(distances, bones, joints);
 }
 
+// The mean of the binding network's weights and NeuroSkinning's (its own, with geodesic voxel binding in it): they learned the same from
+// different evidence, and err in different places.
+Matrix heard_beside(const Matrix& raw, const infer::NeuroskinningModel& second, const Skeleton& skeleton, const Body& body,
+                    const RignetOptions& options, std::vector<std::string>& warnings) {
+  Skeleton placed = skeleton;
+  for (Vec3f& p : placed.rest_positions) p = body.working.normalization.apply(p);
+  const float share = options.ablation.neuroskinning;
+  return (1.0f - share) * raw + share * neuroskinning_rows(body.working.mesh, body.ring, placed, second, options.neuroskinning, warnings);
+}
+
 void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances, const RignetOptions& options, RigReport& report) {
   report.joints = skeleton.size();
   report.coverage = covered_share(distances, kReach);
@@ -350,10 +360,16 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   const Matrix distances = stages.run("bone distances", [&] { return distances_to(list, body, options.ablation); });
   Matrix raw = stages.run(
       "skin network", [&] { return predict_weights(list, skeleton.size(), distances, body, models, options.ablation, report.warnings); });
+  SkinPredictionOptions finish = options.skin;
+  if (const auto* second = models.neuroskinning(); second && options.ablation.neuroskinning > 0.0f && skeleton.size() > 1) {
+    raw = stages.run("second network", [&] { return heard_beside(raw, *second, skeleton, body, options, report.warnings); });
+    finish.smooth = finish.smooth.value_or(0);  // a mean of three is smooth by itself, and few are sure of what is little
+    finish.prune_share = finish.prune_share.value_or(0.1f);
+  }
   result.weights = stages.run("weights", [&] {
     const auto partners = joint_partners(skeleton, body);
     if (partners) raw = mean_with_image(raw, body.working.mesh, *body.symmetry, *partners);
-    SkinWeights weights = finish_weights(raw, body.working, body.ring, options.skin);
+    SkinWeights weights = finish_weights(raw, body.working, body.ring, finish);
     if (!partners || !body.pairs) return weights;
     return mirrored_exactly(weights, body.working.clean.from_original, body.pairs->partner, *partners, options.skin.max_influences);
   });

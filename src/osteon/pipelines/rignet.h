@@ -9,6 +9,7 @@
 #include "osteon/pipelines/body_frame.h"
 #include "osteon/pipelines/confidence.h"
 #include "osteon/pipelines/joint_extraction.h"
+#include "osteon/pipelines/neuroskinning.h"
 #include "osteon/pipelines/rig_report.h"
 #include "osteon/pipelines/skeleton_tree.h"
 #include "osteon/pipelines/skin_prediction.h"
@@ -25,6 +26,7 @@ struct Ablation {
   bool views = true;                 // false: the network sees the character once, as it is
   bool bone_network = true;          // false: the nearer two joints are, the likelier a bone joins them
   bool geodesic = true;              // false: a bone is as far from a vertex as in a straight line
+  float neuroskinning = 0.67f;       // its share in the weights, beside the binding network's; 0: that one alone
   int bones = geometry::kBindBones;  // a vertex chooses from so many at most, 1..kBindBones
 };
 
@@ -38,7 +40,8 @@ struct RignetOptions {
   geometry::WorkingMeshOptions working_mesh = {};
   JointExtractionOptions extraction = {};  // its bandwidth and number of joints are not read
   TreeOptions tree = {};
-  SkinPredictionOptions skin = {};  // with the number of influences
+  NeuroskinningOptions neuroskinning = {.geometric_share = 0.5f};  // where the models have it; how it finishes weights is not read
+  SkinPredictionOptions skin = {};                                 // with the number of influences
   Ablation ablation = {};
 };
 

@@ -14,6 +14,8 @@ skin::Binding by_rignet(const TriangleMesh& mesh, const Skeleton& skeleton, cons
   RignetOptions rignet;
   rignet.skeleton = skeleton;
   rignet.skin.max_influences = options.bind.max_influences;
+  rignet.skin.rigid_islands = options.bind.islands == skin::Islands::rigid;
+  if (!options.neuroskinning) rignet.ablation.neuroskinning = 0.0f;
   RignetResult result = rig_character(mesh, *options.rignet, rignet);
   return {std::move(result.weights), {}, 0, std::move(result.report.warnings), std::move(result.report.repairs)};
 }
@@ -21,8 +23,9 @@ skin::Binding by_rignet(const TriangleMesh& mesh, const Skeleton& skeleton, cons
 skin::Binding by_neuroskinning(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
   NeuroskinningOptions neuro;
   neuro.max_influences = options.bind.max_influences;
+  neuro.rigid_islands = options.bind.islands == skin::Islands::rigid;
   NeuroskinningResult result = neuroskinning_weights(mesh, skeleton, *options.neuroskinning, neuro);
-  return {std::move(result.weights), {}, 0, std::move(result.warnings), std::move(result.repairs)};
+  return {std::move(result.weights), {}, result.rigid_islands, std::move(result.warnings), std::move(result.repairs)};
 }
 
 skin::Binding by_networks(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <cassert>
 
+#include "osteon/skin/islands.h"
 #include "osteon/skin/weight_cleanup.h"
 
 namespace osteon::pipelines {
@@ -22,11 +23,13 @@ SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& worki
   const auto columns = static_cast<std::size_t>(raw.cols());
   Matrix weights = raw;
   skin::prune_rows(weights, 0.0f, columns);  // rows sum to 1 and are finite from here on
-  weights = skin::smooth_rows(weights, one_ring);
-  skin::prune_rows(weights, options.prune_share, options.max_influences);
+  for (int round = 0; round < options.smooth.value_or(1); ++round) weights = skin::smooth_rows(weights, one_ring);
+  skin::prune_rows(weights, options.prune_share.value_or(0.35f), options.max_influences);
   skin::fill_empty_rows(weights, working.mesh.positions, one_ring);
   if (!(weights.maxCoeff() > 0.0f)) weights.col(0).setOnes();
-  return skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
+  SkinWeights out = skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
+  if (options.rigid_islands) skin::make_islands_rigid(out, working.clean);
+  return out;
 }
 
 }  // namespace osteon::pipelines

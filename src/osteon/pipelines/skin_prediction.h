@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "osteon/geometry/neighbourhoods.h"
@@ -12,16 +13,19 @@
 namespace osteon::pipelines {
 
 struct SkinPredictionOptions {
-  float prune_share = 0.35f;       // weights below this share of a vertex's largest go
-  std::size_t max_influences = 4;  // per vertex of the original
+  std::optional<int> smooth = {};         // rounds over the working mesh's one-ring; else 1 (0 where two networks are heard)
+  std::optional<float> prune_share = {};  // weights below this share of a vertex's largest go; else 0.35 (0.1 where two are heard)
+  std::size_t max_influences = 4;         // per vertex of the original
+  bool rigid_islands = true;              // small parts that hang together with nothing else follow one joint (skin/islands.h)
 };
 
 // What a network says about the nearest bones of each vertex -> weights of joints, (V,J): a bone's weight belongs to the joint where the
 // bone starts; padding (-1) is ignored, so characters of fewer bones lose nothing (facts, trap R7). No "dup" joints (trap R14).
 Matrix joint_weights(const Matrix& bone_weights, const geometry::IndexMatrix& nearest, std::span<const Bone> bones, std::size_t joints);
 
-// Raw weights of joints on the working mesh (V,J) -> final ones on the original: smoothed once over the one-ring, small ones pruned, holes
-// filled from the nearest vertex, carried back (facts 7.6). A mesh without any weight gets joint 0 throughout.
+// Raw weights of joints on the working mesh (V,J) -> final ones on the original: smoothed over the one-ring, small ones pruned, holes
+// filled from the nearest vertex, carried back (facts 7.6). A mesh without any weight gets joint 0 throughout. Islands that are made rigid
+// are ours.
 SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& working, const geometry::Neighbourhoods& one_ring,
                            const SkinPredictionOptions& options = {});
 

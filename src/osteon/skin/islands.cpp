@@ -63,4 +63,13 @@ std::size_t make_islands_rigid(WeightRows& rows, const TriangleMesh& mesh, const
   return rigid;
 }
 
+std::size_t make_islands_rigid(SkinWeights& weights, const geometry::CleanMesh& clean, const IslandOptions& options) {
+  WeightRows rows(clean.mesh.positions.size());
+  for (VertexId v : clean.from_original.ids()) rows[clean.from_original[v]].assign(weights[v].begin(), weights[v].end());
+  for (WeightRow& row : rows) merge(row);
+  const std::size_t rigid = make_islands_rigid(rows, clean.mesh, options);
+  if (rigid > 0) weights = to_skin_weights(rows, clean.from_original);
+  return rigid;
+}
+
 }  // namespace osteon::skin

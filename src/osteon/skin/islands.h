@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "osteon/geometry/cleanup.h"
 #include "osteon/mesh/triangle_mesh.h"
 #include "osteon/skin/weight_rows.h"
 
@@ -18,5 +19,8 @@ struct IslandOptions {
 // weight in them. Parts that are joined to others along edges do not count as islands: `mesh` is clean (geometry::clean).
 // Returns how many islands were made rigid.
 std::size_t make_islands_rigid(WeightRows& rows, const TriangleMesh& mesh, const IslandOptions& options = {});
+
+// The same for weights of the mesh that `clean` was made from.
+std::size_t make_islands_rigid(SkinWeights& weights, const geometry::CleanMesh& clean, const IslandOptions& options = {});
 
 }  // namespace osteon::skin

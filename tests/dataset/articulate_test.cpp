@@ -78,6 +78,20 @@ TEST(RandomArticulation, without_proportions_keeps_the_lengths_of_bones) {
     if (bone.end) EXPECT_NEAR((a.joints[*bone.end] - a.joints[bone.start]).norm(), (bone.segment.b - bone.segment.a).norm(), 1e-5f);
 }
 
+TEST(WithSizes, stretches_the_bones_of_a_pose_and_leaves_its_turns) {
+  Random random(5);
+  const Skeleton rest = figure();
+  const Articulation pose = random_articulation(rest, std::nullopt, {.largest_bend = 1.0f, .proportion = 0.0f}, random);
+  const Articulation sizes = random_articulation(rest, std::nullopt, {.largest_bend = 0.0f, .proportion = 0.3f}, random);
+  const Articulation both = with_sizes(pose, sizes, rest);
+  for (const Bone& bone : bones(rest)) {
+    const JointId j = bone.start;
+    const float size = std::cbrt(sizes.linear[j].determinant());
+    EXPECT_TRUE(both.linear[j].isApprox(size * pose.linear[j], 1e-4f));
+    if (bone.end) EXPECT_LT((both.joints[*bone.end] - both.joints[j] - size * (pose.joints[*bone.end] - pose.joints[j])).norm(), 1e-5f);
+  }
+}
+
 // Doing nothing gives what prepare() gave, but for the scale: that was of the original's box, and the reduced mesh fills it less.
 TEST(Articulated, derives_the_same_as_preparing) {
   const Skeleton& rest = capsule().skeleton;

@@ -3,6 +3,7 @@
 
 #include "capsule_character.h"
 #include "osteon/base/safetensors.h"
+#include "osteon/dataset/articulate.h"
 #include "osteon/dataset/batch.h"
 #include "support/expect.h"
 
@@ -82,6 +83,23 @@ TEST(Pack, derives_after_loading_what_was_there_before_saving) {
     for (std::size_t k = 0; k < a.voxels.voxels.size(); ++k) moved += a.voxels.voxels[k] != b.voxels.voxels[k] ? 1 : 0;
     EXPECT_LT(static_cast<double>(moved) / static_cast<double>(a.voxels.voxels.size()), 1e-3);
   }
+}
+
+TEST(Pack, gives_back_poses_to_the_precision_of_half_numbers_and_none_where_there_were_none) {
+  const test::TemporaryFolder folder;
+  auto saved = two_characters();
+  Random random(1);
+  for (int i = 0; i < 3; ++i) saved[1].poses.push_back(random_articulation(saved[1].skeleton, std::nullopt, {}, random));
+  save_characters(folder / "x.safetensors", saved);
+  const auto loaded = load_characters(folder / "x.safetensors");
+  EXPECT_TRUE(loaded[0].poses.empty());
+  ASSERT_EQ(loaded[1].poses.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (JointId j : saved[1].skeleton.names.ids()) {
+      const Articulation &a = saved[1].poses[i], &b = loaded[1].poses[i];
+      EXPECT_LT((a.linear[j] - b.linear[j]).cwiseAbs().maxCoeff(), 1e-3f);
+      EXPECT_VEC3_NEAR(a.joints[j], b.joints[j], 1e-3f);
+    }
 }
 
 TEST(Pack, a_saved_file_saved_again_stays_the_same) {

@@ -95,6 +95,16 @@ Articulation random_articulation(const Skeleton& skeleton, const std::optional<P
   return out;
 }
 
+Articulation with_sizes(const Articulation& pose, const Articulation& sizes, const Skeleton& skeleton) {
+  Articulation out = pose;
+  for (JointId j : skeleton.names.ids()) {
+    out.linear[j] *= std::cbrt(sizes.linear[j].determinant());
+    if (const auto parent = skeleton.parents[j])
+      out.joints[j] = out.joints[*parent] + std::cbrt(sizes.linear[*parent].determinant()) * (pose.joints[j] - pose.joints[*parent]);
+  }
+  return out;
+}
+
 PreparedCharacter articulated(const PreparedCharacter& character, const Articulation& articulation) {
   PreparedCharacter out = character;
   PerJoint<Transform> transforms;
@@ -108,9 +118,8 @@ PreparedCharacter articulated(const PreparedCharacter& character, const Articula
   out.skeleton.rest_positions = articulation.joints;
   for (JointId j : out.skeleton.names.ids())
     out.skeleton.rest_orientations[j] = Quatf(rotation_of(articulation.linear[j])) * character.skeleton.rest_orientations[j];
-  const geometry::Normalization again = geometry::normalization_of(out.mesh);
-  for (Vec3f& p : out.mesh.positions) p = again.apply(p);
-  for (Vec3f& p : out.skeleton.rest_positions) p = again.apply(p);
+  out.poses.clear();
+  normalise_again(out);
   return out;
 }
 

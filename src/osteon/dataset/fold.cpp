@@ -12,13 +12,6 @@ namespace {
 
 constexpr float kBlur = 0.5f;
 
-PerJoint<float> moved_by(const PreparedCharacter& character) {
-  PerJoint<float> sums(character.joints(), 0.0f);
-  for (VertexId v : character.mesh.positions.ids())
-    for (const Influence& i : character.weights[v]) sums[i.joint] += i.weight;
-  return sums;
-}
-
 // For every joint the joint that it is folded into, itself where it stays.
 PerJoint<JointId> targets(const PreparedCharacter& character, std::size_t joints, const std::optional<Plane>& symmetry, Random& random) {
   const Skeleton& skeleton = character.skeleton;
@@ -60,6 +53,7 @@ PreparedCharacter folded(const PreparedCharacter& character, std::size_t joints,
   const PerJoint<JointId> into = targets(character, joints, symmetry, random);
   PreparedCharacter out = character;
   out.skeleton = {};
+  out.poses.clear();  // of the joints of before
   PerJoint<JointId> renumbered(character.joints());
   for (JointId j : into.ids()) {
     if (into[j] != j) continue;

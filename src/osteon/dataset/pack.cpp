@@ -19,7 +19,8 @@ using Arrays = std::map<std::string, Array>;
 constexpr std::uint16_t kNoParent = 65535;
 constexpr float kWeightUnit = 65535.0f;  // weights are stored as u16 of 1/65535
 constexpr float kSteps = 65535.0f;       // so many on a mesh's longest side
-constexpr float kHalfTurn = 32767.0f;    // orientations' numbers, -1 .. 1, are stored as u16 of so many a unit
+constexpr std::int64_t kPoseNumbers = 12;
+constexpr float kHalfTurn = 32767.0f;  // orientations' numbers, -1 .. 1, are stored as u16 of so many a unit
 
 std::int64_t length(std::size_t n) { return static_cast<std::int64_t>(n); }
 
@@ -91,6 +92,17 @@ void add_weights(Arrays& arrays, const std::string& prefix, const SkinWeights& w
   arrays[prefix + "influence_weights"] = Array::of<std::uint16_t>(values, {length(values.size())});
 }
 
+// (P,J,12) of P poses, half precision: of each joint its linear map, row after row, and where it goes.
+Array of_poses(std::span<const Articulation> poses, std::size_t joints) {
+  std::vector<float> flat;
+  for (const Articulation& pose : poses)
+    for (JointId j : pose.joints.ids()) {
+      for (const auto& row : pose.linear[j].rowwise()) flat.insert(flat.end(), row.begin(), row.end());
+      flat.insert(flat.end(), pose.joints[j].begin(), pose.joints[j].end());
+    }
+  return Array::half(flat, {length(poses.size()), length(joints), kPoseNumbers});
+}
+
 void add_character(Arrays& arrays, const PreparedCharacter& c) {
   if (c.vertices() > 65535) throw Error("{}: has {} working vertices; at most 65535 can be packed", c.info.id, c.vertices());
   const std::string prefix = c.info.id + "/";
@@ -102,6 +114,7 @@ void add_character(Arrays& arrays, const PreparedCharacter& c) {
   arrays[prefix + "tolerances"] = Array::of<float>(c.tolerances.raw(), {length(c.joints())});
   arrays[prefix + "attention"] = Array::of<std::uint8_t>(c.attention, {length(c.attention.size())});
   add_weights(arrays, prefix, c.weights);
+  if (!c.poses.empty()) arrays[prefix + "poses"] = of_poses(c.poses, c.joints());
 }
 
 json description(const PreparedCharacter& c) {
@@ -240,6 +253,22 @@ void read_nearest(const Reader& reader, PreparedCharacter& c) {
   c.nearest_distances = Eigen::Map<const Matrix>(distances.data(), rows, columns);
 }
 
+// Characters without motion, and files of before, hold none.
+std::vector<Articulation> read_poses(const Reader& reader, std::size_t joints) {
+  if (!reader.has("poses")) return {};
+  const auto flat = reader.values<float>("poses");
+  constexpr auto width = static_cast<std::size_t>(kPoseNumbers);
+  reader.expect(flat.size() % (joints * width) == 0, "poses do not fit the joints");
+  std::vector<Articulation> poses(flat.size() / (joints * width));
+  const float* next = flat.data();
+  for (Articulation& pose : poses)
+    for (std::size_t j = 0; j < joints; ++j, next += width) {
+      pose.linear.push_back(Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(next));
+      pose.joints.push_back(Eigen::Map<const Vec3f>(next + 9));
+    }
+  return poses;
+}
+
 PreparedCharacter read_character(const Safetensors& file, const json& about) {
   PreparedCharacter c;
   c.info = {about.at("id"), about.at("group"), about.at("category")};
@@ -253,6 +282,7 @@ PreparedCharacter read_character(const Safetensors& file, const json& about) {
   c.attention = reader.values<std::uint8_t>("attention");
   c.tolerances = PerJoint<float>(reader.values<float>("tolerances"));
   reader.expect(c.attention.size() == c.vertices() && c.tolerances.size() == c.joints(), "attention or tolerances do not fit");
+  c.poses = read_poses(reader, c.joints());
   read_nearest(reader, c);
   derive_inputs(c);
   return c;

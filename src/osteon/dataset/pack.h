@@ -12,8 +12,9 @@
 namespace osteon::dataset {
 
 // Writes characters into one safetensors file, compactly (about 33 kB each at 1200 vertices): the working mesh, its positions rounded to
-// 1/65535 of its longest side, the reference weights (to 1/65535), the skeleton, its tolerances and the attention. What follows from these
-// is left out. `metadata` is added to the file's. Throws Error when it cannot be written.
+// 1/65535 of its longest side, the reference weights (to 1/65535), the skeleton, its tolerances, the attention and, where there are some,
+// poses in half precision (24 bytes a joint and pose). What follows from these is left out. `metadata` is added to the file's. Throws Error
+// when it cannot be written.
 void save_characters(const std::filesystem::path& path, std::span<const PreparedCharacter> characters,
                      const std::map<std::string, std::string>& metadata = {});
 

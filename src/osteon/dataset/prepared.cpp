@@ -97,6 +97,19 @@ void derive_from_shape(PreparedCharacter& character, Parts parts) {
   if (parts == Parts::skin || parts == Parts::bind) derive_nearest_bones(character, static_cast<int>(character.nearest_bones.cols()));
 }
 
+PerJoint<float> moved_by(const PreparedCharacter& character) {
+  PerJoint<float> sums(character.joints(), 0.0f);
+  for (VertexId v : character.mesh.positions.ids())
+    for (const Influence& i : character.weights[v]) sums[i.joint] += i.weight;
+  return sums;
+}
+
+void normalise_again(PreparedCharacter& character) {
+  const geometry::Normalization again = geometry::normalization_of(character.mesh);
+  for (Vec3f& p : character.mesh.positions) p = again.apply(p);
+  for (Vec3f& p : character.skeleton.rest_positions) p = again.apply(p);
+}
+
 PreparedCharacter prepare(const Rig& rig, CharacterInfo info, const PrepareOptions& options) {
   validate(rig);
   PreparedCharacter out;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "osteon/dataset/articulation.h"
 #include "osteon/geometry/bind_features.h"
 #include "osteon/geometry/neighbourhoods.h"
 #include "osteon/geometry/rignet_features.h"
@@ -44,6 +45,9 @@ struct PreparedCharacter {
   std::vector<std::uint8_t> attention;  // (V) 1 where a ray from a joint, perpendicular to its bones, meets the surface (facts 5.2)
   PerJoint<float> tolerances;           // (J) mean length of these rays: half the local diameter; what counts as found in IoU
 
+  // Poses from real motion, for augmentation alone (motion_poses.h); none where there is no motion for the character.
+  std::vector<Articulation> poses;
+
   // For the skin and the binding network: per vertex the nearest bones of `bones(skeleton)` by volumetric geodesic distance, nearest first.
   // Costly, so loaded characters have none (0 rows) before derive_nearest_bones(); examples_of() calls it where the network reads them.
   geometry::IndexMatrix nearest_bones;  // (V,N) bone index; N = min(B, options.nearest_bones)
@@ -70,6 +74,12 @@ void derive_nearest_bones(PreparedCharacter& character, int most = PrepareOption
 // After the mesh or the joints have changed: everything that follows from them and that `parts` reads. Joints: neighbourhoods and
 // attention; pairs: neighbourhoods and voxels; tree: voxels; skin and bind: these and the nearest bones, as many as there were (not none).
 void derive_from_shape(PreparedCharacter& character, Parts parts);
+
+// How much each joint moves: the sum of its weights over the vertices.
+PerJoint<float> moved_by(const PreparedCharacter& character);
+
+// Brings the mesh and the joints into the frame of the networks again, after the mesh has changed.
+void normalise_again(PreparedCharacter& character);
 
 // Inputs of the skin network, (V, 3 + 8k); pre: k <= options.nearest_bones of its preparation.
 geometry::SkinInputs skin_inputs(const PreparedCharacter& character, int k = 5);

@@ -80,6 +80,17 @@ void add_common_options(CLI::App& command, Arguments& a) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--proportion", articulate.proportion, "Standard deviation of the logarithm of a part's size")->capture_default_str();
+  command
+      .add_option("--from-motion", articulate.from_motion,
+                  "Share of those bent that stand in one of their poses of `dataset prepare --motions`")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--drop", a.options.augment.drop, "How often a character loses some of its accessories")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--flip", a.options.augment.flip, "How often edges of the mesh are flipped")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command.add_option("--seed", a.options.seed)->capture_default_str();
   command.add_option("--device", a.device, "cpu, cuda or cuda:N")->capture_default_str();
   command.add_option("--threads", a.threads, "CPU threads (default: all cores)")->check(CLI::Range(1, 1024));

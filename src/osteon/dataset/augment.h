@@ -6,6 +6,7 @@
 #include "osteon/base/random.h"
 #include "osteon/base/types.h"
 #include "osteon/dataset/articulate.h"
+#include "osteon/geometry/edge_flips.h"
 
 namespace osteon::dataset {
 
@@ -25,6 +26,10 @@ struct AugmentOptions {
   float reduce = 0.7f;               // probability of fewer vertices, where no weights are learned ...
   std::size_t least_vertices = 500;  // ... from here up to as many as there are
   float nameless = 0.25f;            // probability that joints' names are not read, where they would be
+  float drop = 0.0f;                 // probability of fewer accessories ...
+  float dropped = 0.5f;              // ... each then goes with this one
+  float flip = 0.0f;                 // probability of other triangles on the same surface
+  geometry::EdgeFlipOptions flips = {};
 
   static AugmentOptions none() {
     return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 500, 0.0f};

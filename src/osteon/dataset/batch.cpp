@@ -9,6 +9,7 @@
 #include "osteon/base/parallel.h"
 #include "osteon/dataset/fold.h"
 #include "osteon/dataset/neuro.h"
+#include "osteon/dataset/without_accessories.h"
 #include "osteon/geometry/decimate.h"
 #include "osteon/geometry/regions.h"
 #include "osteon/geometry/symmetry.h"
@@ -63,25 +64,43 @@ Example example_of(PreparedCharacter character, Parts parts, const std::optional
   return example;
 }
 
-// The example itself, or one made of it, which is then kept in `made`: moved through its rig; with fewer joints; its mesh reduced.
+// Random bends and proportions, or proportions of one of the character's own poses.
+Articulation some_articulation(const Example& example, const ArticulateOptions& options, Random& random) {
+  const Skeleton& skeleton = example.character.skeleton;
+  const std::vector<Articulation>& poses = example.character.poses;
+  const bool from_motion = options.from_motion > 0.0f && !poses.empty() && random.uniform() < options.from_motion;
+  if (!from_motion) return random_articulation(skeleton, example.symmetry, options, random);
+  ArticulateOptions unbent = options;
+  unbent.largest_bend = 0.0f;
+  const Articulation& pose = poses[random.below(poses.size())];
+  return with_sizes(pose, random_articulation(skeleton, example.symmetry, unbent, random), skeleton);
+}
+
+// The example itself, or one made of it, which is then kept in `made`: moved through its rig; without some accessories; with fewer joints;
+// its mesh reduced; its surface cut into other triangles. What is off draws no random number.
 const Example& varied(const Example& example, Parts parts, const AugmentOptions& options, Random& random, std::optional<Example>& made) {
   const bool articulate = random.uniform() < options.articulate.probability && example.character.joints() > 1;
   const bool fold = random.uniform() < options.fold && example.character.joints() > kLeastJoints;
   const bool reduce = random.uniform() < options.reduce && parts == Parts::joints && example.character.vertices() > options.least_vertices;
-  if (!articulate && !fold && !reduce) return example;
+  const bool drop = options.drop > 0.0f && random.uniform() < options.drop;
+  const bool flip = options.flip > 0.0f && random.uniform() < options.flip;
+  if (!articulate && !fold && !reduce && !drop && !flip) return example;
   PreparedCharacter changed =
-      articulate
-          ? articulated(example.character, random_articulation(example.character.skeleton, example.symmetry, options.articulate, random))
-          : example.character;
+      articulate ? articulated(example.character, some_articulation(example, options.articulate, random)) : example.character;
+  if (drop) {
+    PreparedCharacter bare = without_accessories(changed, options.dropped, random);
+    if (bare.joints() > 1) changed = std::move(bare);
+  }
   if (fold) {
     const float share = std::exp(random.uniform(std::log(options.least_fold), 0.0f));
     changed = folded(changed, std::max(kLeastJoints, static_cast<std::size_t>(share * static_cast<float>(changed.joints()))),
                      example.symmetry, random);
   }
-  if (reduce) {
+  if (reduce && changed.vertices() > options.least_vertices) {
     const std::size_t target = options.least_vertices + random.below(changed.vertices() - options.least_vertices);
     changed.mesh = geometry::decimate(changed.mesh, {.target_vertices = target}).mesh;
   }
+  if (flip) changed.mesh = geometry::with_flipped_edges(std::move(changed.mesh), options.flips, random);
   derive_from_shape(changed, parts);
   const bool reads_plane = parts == Parts::pairs || parts == Parts::tree;
   const auto symmetry = reads_plane ? geometry::symmetry_plane(changed.mesh) : example.symmetry;

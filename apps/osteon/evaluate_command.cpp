@@ -169,8 +169,7 @@ std::vector<double> score(Task task, const Subject& subject, const infer::Rignet
 
 Tables evaluate_split(const EvaluateArguments& arguments) {
   const auto models = arguments.models.load();
-  if (arguments.task == "skin-methods")
-    return {skin_methods_table(arguments.data, arguments.split, models, kSkinColumns)};
+  if (arguments.task == "skin-methods") return {skin_methods_table(arguments.data, arguments.split, models, kSkinColumns)};
   Tables tables{{"skeleton", kSkeletonColumns, {}, {}},
                 {"skin, skeleton given", kSkinColumns, {}, {}},
                 {"connectivity, joints given", kConnectivityColumns, {}, {}}};
@@ -213,7 +212,9 @@ const std::map<std::string, std::function<void(pipelines::RignetOptions&)>> kPar
                                                                                    {"spread", [](auto& o) { o.extraction.spread_share = 2.0f; }},
                                                                                    {"symmetry", [](auto& o) { o.symmetry = pipelines::Symmetry::off; }},
                                                                                    {"bone-network", [](auto& o) { o.ablation.bone_network = false; }},
-                                                                                   {"geodesic", [](auto& o) { o.ablation.geodesic = false; }}};
+                                                                                   {"geodesic", [](auto& o) { o.ablation.geodesic = false; }},
+                                                                                   {"neuroskinning", [](auto& o) { o.ablation.neuroskinning = 0.0f; }},
+                                                                                   {"islands", [](auto& o) { o.skin.rigid_islands = false; }}};
 
 void measure(const EvaluateArguments& arguments) {
   const Tables tables = arguments.data.empty() ? compare_files(arguments) : evaluate_split(arguments);

@@ -20,6 +20,7 @@
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/pipelines/joint_votes.h"
 #include "osteon/pipelines/mean_shift.h"
+#include "osteon/pipelines/neuroskinning.h"
 #include "osteon/pipelines/rignet.h"
 #include "osteon/synth/character.h"
 
@@ -111,8 +112,13 @@ std::map<std::string, Work> work_of(const TriangleMesh& mesh, const infer::Rigne
   }
   choices.add(std::vector<float>(of_bones.size() * nets::bind_features), offsets, of_bones);
   const infer::NetworkInput input{graph, &skeleton, nullptr, {}, &choices, &votes, &tree};
-  const auto gflop = [&](Network network) { return 1e-9 * bench::flop_of(network, input); };
+  const auto gflop_of = [](Network network, const infer::NetworkInput& of) { return 1e-9 * bench::flop_of(network, of); };
+  const auto gflop = [&](Network network) { return gflop_of(network, input); };
 
+  const geometry::Neighbourhoods near = pipelines::neuroskinning_neighbours(working.mesh);
+  Skeleton placed = result.skeleton;
+  for (Vec3f& p : placed.rest_positions) p = working.normalization.apply(p);
+  const auto second = pipelines::neuroskinning_inputs(working.mesh, ring, near, placed, *models.neuroskinning());
   const auto plane = geometry::symmetry_plane(working.mesh);
   const auto seen = pipelines::joint_votes(working.mesh, graph, regions, models, pipelines::expected_joints(mesh.faces.size(), 0.5f));
   return {{"body frame", {.gigabytes = gigabytes(mesh.positions.size(), 12)}},
@@ -130,6 +136,9 @@ std::map<std::string, Work> work_of(const TriangleMesh& mesh, const infer::Rigne
           {"tree", {.gigabytes = gigabytes(joints * joints, 4)}},
           {"bone distances", {.gigabytes = bytes_of(working.mesh) + gigabytes(v * bones, 4)}},
           {"skin network", {.gflop = gflop(Network::bind)}},
+          {"wide neighbourhoods", {.gigabytes = bytes_of(working.mesh) + bytes_of(near)}},
+          {"joint choices", {.gigabytes = bytes_of(working.mesh) + gigabytes(second.joint_of_row.size(), 8)}},
+          {"second network", {.gflop = gflop_of(Network::neuroskinning, {.mesh = second.graph, .neuro = &second.neuro})}},
           {"weights", {.gigabytes = gigabytes(v * joints, 4) + gigabytes(mesh.positions.size() * 4, 8)}}};
 }
 

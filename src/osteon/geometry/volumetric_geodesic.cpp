@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -48,6 +49,42 @@ std::vector<Sample> sampled(const Segment& bone, const BodyLines& lines) {
   return samples;
 }
 
+// A way to a vertex that may be its shortest from the bone: a straight one not looked along yet (the rank-th nearest bone in a straight
+// line), or one over the graph (rank -1).
+struct Label {
+  float distance;
+  std::int32_t vertex, bone, rank;
+};
+
+// The labels, nearest first. Those far ahead wait unsorted in buckets, so that the heap stays small. Pre: what is pushed is no nearer than
+// what was popped last.
+class LabelQueue {
+ public:
+  void push(const Label& label) {
+    const auto bucket = static_cast<std::size_t>(std::min(label.distance / kWidth, kLastBucket));
+    if (bucket <= current_) return heap_.push(label);
+    if (bucket >= later_.size()) later_.resize(bucket + 1);
+    later_[bucket].push_back(label);
+  }
+  std::optional<Label> pop() {
+    while (heap_.empty() && ++current_ < later_.size())
+      for (const Label& label : std::exchange(later_[current_], {})) heap_.push(label);
+    if (heap_.empty()) return std::nullopt;
+    const Label label = heap_.top();
+    heap_.pop();
+    return label;
+  }
+
+ private:
+  static constexpr float kWidth = 0.002f, kLastBucket = 65535.0f;  // of a bucket, in the mesh's unit; the last holds all that is beyond
+  struct Later {
+    bool operator()(const Label& a, const Label& b) const { return a.distance > b.distance; }
+  };
+  std::priority_queue<Label, std::vector<Label>, Later> heap_;
+  std::vector<std::vector<Label>> later_;
+  std::size_t current_ = 0;
+};
+
 // Ways from all bones at once, nearest first, so that a vertex can stop listening once it has heard of as many joints as are wanted: what
 // is farther from it than these is also farther from everybody behind it.
 class Ways {
@@ -74,9 +111,8 @@ class Ways {
   Matrix run(const SurfaceGraph& body) {
     for (Eigen::Index b = 0; b < columns(); ++b) start_at_nearest_faces(b);
     for (Eigen::Index v = 0; v < rows(); ++v) look_next(v, 0);
-    while (!queue_.empty()) {
-      const Label label = queue_.top();
-      queue_.pop();
+    while (const auto next = queue_.pop()) {
+      const Label& label = *next;
       if (label.rank >= 0) look_next(label.vertex, label.rank + 1);
       if (!is_wanted(label) || (label.rank >= 0 && !sees(label.vertex, label.bone))) continue;
       settle(label);
@@ -89,15 +125,6 @@ class Ways {
 
  private:
   enum class Sight : std::uint8_t { unknown, no, yes };
-  // A way to a vertex that may be its shortest from the bone: a straight one not looked along yet (the rank-th nearest bone in a straight
-  // line), or one over the graph (rank -1).
-  struct Label {
-    float distance;
-    std::int32_t vertex, bone, rank;
-  };
-  struct Later {
-    bool operator()(const Label& a, const Label& b) const { return a.distance > b.distance; }
-  };
   struct Heard {
     std::int32_t bone;
     float distance;
@@ -191,7 +218,7 @@ class Ways {
   std::vector<Sight> sight_;  // (V,B)
   Matrix distances_;          // (V,B) the shortest way so far
   std::vector<OfVertex> heard_;
-  std::priority_queue<Label, std::vector<Label>, Later> queue_;
+  LabelQueue queue_;
 };
 
 }  // namespace

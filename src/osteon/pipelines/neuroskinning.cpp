@@ -79,48 +79,32 @@ Matrix finite(Matrix logits, std::vector<std::string>& warnings) {
 }
 
 // Softmax over the joints that each vertex may choose, in the joints of the original, (V,J).
-Matrix joint_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
-                     const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, const NeuroskinningOptions& options,
-                     std::vector<std::string>& warnings) {
-  const skin::BoneChoices choices = skin::bone_choices(body.mesh, body.merged.skeleton, options.choices);
-  const skin::ChoiceRows rows =
-      skin::choice_rows(body.mesh.positions.raw(), body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
-  neuro.choices.add(rows.features, rows.offsets, rows.joints);
-  neuro.joints = rows.joint_features;
-  const Matrix logits = finite(model(body.graph, neuro), warnings);
-  Matrix out = Matrix::Zero(choices.nearest.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()));
-  for (Eigen::Index v = 0; v < out.rows(); ++v) {
-    const auto first = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v)]);
-    const auto last = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(v) + 1]);
+Matrix joint_weights(const NeuroskinningInputs& inputs, const Matrix& logits, float geometric_share) {
+  const std::vector<std::int32_t>& offsets = inputs.neuro.choices.offsets;
+  const auto vertices = static_cast<Eigen::Index>(offsets.size()) - 1;
+  Matrix out = Matrix::Zero(vertices, static_cast<Eigen::Index>(inputs.joints));
+  for (Eigen::Index v = 0; v < vertices; ++v) {
+    const auto first = static_cast<std::size_t>(offsets[static_cast<std::size_t>(v)]),
+               last = static_cast<std::size_t>(offsets[static_cast<std::size_t>(v) + 1]);
     const auto add = [&](float share, float of_network) {
-      const auto logit = [&](std::size_t row) { return of_network * logits(static_cast<Eigen::Index>(row), 0) + rows.log_shares[row]; };
+      const auto logit = [&](std::size_t row) { return of_network * logits(static_cast<Eigen::Index>(row), 0) + inputs.log_shares[row]; };
       float largest = logit(first), total = 0.0f;
       for (std::size_t row = first; row < last; ++row) largest = std::max(largest, logit(row));
       for (std::size_t row = first; row < last; ++row) total += std::exp(logit(row) - largest);
-      for (std::size_t row = first; row < last; ++row) {
-        const auto bone = static_cast<std::size_t>(choices.nearest(v, static_cast<Eigen::Index>(row - first)));
-        out(v, static_cast<Eigen::Index>(index(owners.of_bone(choices.bones, bone)))) += share * std::exp(logit(row) - largest) / total;
-      }
+      for (std::size_t row = first; row < last; ++row)
+        out(v, static_cast<Eigen::Index>(index(inputs.joint_of_row[row]))) += share * std::exp(logit(row) - largest) / total;
     };
-    add(1.0f - options.geometric_share, 1.0f);
-    if (options.geometric_share > 0.0f) add(options.geometric_share, 0.0f);
+    add(1.0f - geometric_share, 1.0f);
+    if (geometric_share > 0.0f) add(geometric_share, 0.0f);
   }
   return out;
 }
 
 // The same by the paper's network: softmax over the slots that the skeleton has.
-Matrix slot_weights(const Body& body, const Owners& owners, const infer::NeuroskinningModel& model, nets::NeuroArrays& neuro,
-                    const skin::SuperSkeleton& super, const skin::SlotAssignment& assignment, std::vector<std::string>& warnings) {
-  const Skeleton& skeleton = body.merged.skeleton;
-  neuro.features = skin::slot_rows(body.mesh.positions.raw(), body.normals, skeleton, super, assignment, nets::neuro_slots);
-  const Matrix logits = finite(model(body.graph, neuro), warnings);
-  Matrix out = Matrix::Constant(logits.rows(), static_cast<Eigen::Index>(body.merged.from_original.size()), kAbsent);
-  std::vector<bool> taken(super.slots().size(), false);
-  for (JointId j : skeleton.names.ids()) {
-    const std::size_t slot = assignment.slot[j];
-    if (!taken[slot]) out.col(static_cast<Eigen::Index>(index(owners.first(j)))) = logits.col(static_cast<Eigen::Index>(slot));
-    taken[slot] = true;
-  }
+Matrix slot_weights(const NeuroskinningInputs& inputs, const Matrix& logits) {
+  Matrix out = Matrix::Constant(logits.rows(), static_cast<Eigen::Index>(inputs.joints), kAbsent);
+  for (const auto& [joint, slot] : inputs.slots)
+    out.col(static_cast<Eigen::Index>(index(joint))) = logits.col(static_cast<Eigen::Index>(slot));
   for (Eigen::Index v = 0; v < out.rows(); ++v) {
     out.row(v) = (out.row(v).array() - out.row(v).maxCoeff()).exp();
     out.row(v) /= out.row(v).sum();
@@ -130,17 +114,48 @@ Matrix slot_weights(const Body& body, const Owners& owners, const infer::Neurosk
 
 }  // namespace
 
-Matrix neuroskinning_rows(const TriangleMesh& mesh, const geometry::Neighbourhoods& ring, const Skeleton& skeleton,
-                          const infer::NeuroskinningModel& model, const NeuroskinningOptions& options, std::vector<std::string>& warnings) {
-  const Body body = study(mesh, ring, skeleton);
+geometry::Neighbourhoods neuroskinning_neighbours(const TriangleMesh& mesh) {
+  return geometry::geodesic_balls(mesh, kPoolReach, nets::neuro_pooling.back() - 1).members;
+}
+
+NeuroskinningInputs neuroskinning_inputs(const TriangleMesh& mesh, const geometry::Neighbourhoods& ring,
+                                         const geometry::Neighbourhoods& near, const Skeleton& skeleton,
+                                         const infer::NeuroskinningModel& model, const skin::BoneChoiceOptions& options) {
+  Body body = study(mesh, ring, skeleton);
   const skin::SuperSkeleton super = skin::SuperSkeleton::from_json(model.super_skeleton());
   const skin::SlotAssignment assignment = super.assign(body.merged.skeleton);
-  nets::NeuroArrays neuro;
-  const auto near = geometry::geodesic_balls(body.mesh, kPoolReach, nets::neuro_pooling.back() - 1).members;
-  neuro.add_nearest(near.offsets, near.members, 0);
   const Owners owners(skeleton, body.merged);
-  return model.has_slots() ? slot_weights(body, owners, model, neuro, super, assignment, warnings)
-                           : joint_weights(body, owners, model, neuro, super, assignment, options, warnings);
+  const std::vector<Vec3f>& positions = body.mesh.positions.raw();
+  NeuroskinningInputs out;
+  out.joints = skeleton.size();
+  out.neuro.add_nearest(near.offsets, near.members, 0);
+  if (model.has_slots()) {
+    out.neuro.features = skin::slot_rows(positions, body.normals, body.merged.skeleton, super, assignment, nets::neuro_slots);
+    std::vector<bool> taken(super.slots().size(), false);
+    for (JointId j : body.merged.skeleton.names.ids())
+      if (const std::size_t slot = assignment.slot[j]; !taken[slot]) {
+        out.slots.emplace_back(owners.first(j), slot);
+        taken[slot] = true;
+      }
+  } else {
+    const skin::BoneChoices choices = skin::bone_choices(body.mesh, body.merged.skeleton, options);
+    const skin::ChoiceRows rows =
+        skin::choice_rows(positions, body.normals, body.merged.skeleton, choices, super, assignment, nets::neuro_kinds);
+    out.neuro.choices.add(rows.features, rows.offsets, rows.joints);
+    out.neuro.joints = rows.joint_features;
+    out.log_shares = rows.log_shares;
+    for (Eigen::Index v = 0; v + 1 < static_cast<Eigen::Index>(rows.offsets.size()); ++v)
+      for (std::int32_t k = 0; k < rows.offsets[static_cast<std::size_t>(v) + 1] - rows.offsets[static_cast<std::size_t>(v)]; ++k)
+        out.joint_of_row.push_back(owners.of_bone(choices.bones, static_cast<std::size_t>(choices.nearest(v, k))));
+  }
+  out.graph = std::move(body.graph);
+  return out;
+}
+
+Matrix neuroskinning_rows(const NeuroskinningInputs& inputs, const infer::NeuroskinningModel& model, float geometric_share,
+                          std::vector<std::string>& warnings) {
+  const Matrix logits = finite(model(inputs.graph, inputs.neuro), warnings);
+  return model.has_slots() ? slot_weights(inputs, logits) : joint_weights(inputs, logits, geometric_share);
 }
 
 NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skeleton& skeleton, const infer::NeuroskinningModel& model,
@@ -152,7 +167,9 @@ NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skelet
   result.repairs = working.clean.repairs;
   Skeleton placed = turned(skeleton, turn);
   for (Vec3f& p : placed.rest_positions) p = working.normalization.apply(p);
-  Matrix weights = neuroskinning_rows(working.mesh, ring, placed, model, options, result.warnings);
+  const NeuroskinningInputs inputs =
+      neuroskinning_inputs(working.mesh, ring, neuroskinning_neighbours(working.mesh), placed, model, options.choices);
+  Matrix weights = neuroskinning_rows(inputs, model, options.geometric_share, result.warnings);
   for (int round = 0; round < options.smooth; ++round) weights = skin::smooth_rows(weights, ring);
   skin::prune_rows(weights, options.prune_share, options.max_influences);
   skin::fill_empty_rows(weights, working.mesh.positions, ring);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "osteon/geometry/neighbourhoods.h"
@@ -29,10 +31,28 @@ struct NeuroskinningResult {
   std::vector<std::string> warnings, repairs;
 };
 
-// Weights that are not finished, (V,J), rows sum to 1, for a normalised working mesh with its one-ring and a skeleton in the same frame,
-// upright. Where the joints' names have left at -x, the network is shown both turned by 180 degrees.
-Matrix neuroskinning_rows(const TriangleMesh& mesh, const geometry::Neighbourhoods& ring, const Skeleton& skeleton,
-                          const infer::NeuroskinningModel& model, const NeuroskinningOptions& options, std::vector<std::string>& warnings);
+// What a network reads of a mesh and a skeleton, and whose its answers are.
+struct NeuroskinningInputs {
+  nets::MeshArrays graph;
+  nets::NeuroArrays neuro;
+  std::size_t joints = 0;                              // J, of the skeleton that was given
+  std::vector<float> log_shares;                       // ours: (C) geodesic voxel binding's own share
+  std::vector<JointId> joint_of_row;                   // ours: (C)
+  std::vector<std::pair<JointId, std::size_t>> slots;  // the paper's: of the joints that have one to themselves
+};
+
+// The vertices that the graph units pool over, nearest first.
+geometry::Neighbourhoods neuroskinning_neighbours(const TriangleMesh& mesh);
+
+// For a normalised working mesh with its one-ring and those neighbours, and a skeleton in the same frame, upright. Where the joints' names
+// have left at -x, the network is shown both turned by 180 degrees.
+NeuroskinningInputs neuroskinning_inputs(const TriangleMesh& mesh, const geometry::Neighbourhoods& ring,
+                                         const geometry::Neighbourhoods& near, const Skeleton& skeleton,
+                                         const infer::NeuroskinningModel& model, const skin::BoneChoiceOptions& options = {});
+
+// Weights that are not finished, (V,J); rows sum to 1.
+Matrix neuroskinning_rows(const NeuroskinningInputs& inputs, const infer::NeuroskinningModel& model, float geometric_share,
+                          std::vector<std::string>& warnings);
 
 // Liu and others, NeuroSkinning, 2019: skin weights for a skeleton that is given. mesh -> its own frame, the left side by the joints' names
 // at +x -> working mesh -> joints onto the slots of the super skeleton -> network -> weights on the mesh that was given. Joints at one

@@ -34,7 +34,7 @@ class Stages {
 
   template <class Work>
   auto run(std::string_view name, const Work& work) {
-    constexpr double kStages = 18.0;
+    constexpr double kStages = 20.0;
     if (progress_) progress_(name, static_cast<double>(report_.stages.size()) / kStages);
     const auto start = std::chrono::steady_clock::now();
     auto result = work();
@@ -319,11 +319,17 @@ Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const
 // The mean of the binding network's weights and NeuroSkinning's (its own, with geodesic voxel binding in it): they learned the same from
 // different evidence, and err in different places.
 Matrix heard_beside(const Matrix& raw, const infer::NeuroskinningModel& second, const Skeleton& skeleton, const Body& body,
-                    const RignetOptions& options, std::vector<std::string>& warnings) {
+                    const RignetOptions& options, Stages& stages, std::vector<std::string>& warnings) {
   Skeleton placed = skeleton;
   for (Vec3f& p : placed.rest_positions) p = body.working.normalization.apply(p);
+  const TriangleMesh& mesh = body.working.mesh;
+  const auto near = stages.run("wide neighbourhoods", [&] { return neuroskinning_neighbours(mesh); });
+  const auto inputs = stages.run(
+      "joint choices", [&] { return neuroskinning_inputs(mesh, body.ring, near, placed, second, options.neuroskinning.choices); });
   const float share = options.ablation.neuroskinning;
-  return (1.0f - share) * raw + share * neuroskinning_rows(body.working.mesh, body.ring, placed, second, options.neuroskinning, warnings);
+  return stages.run("second network", [&]() -> Matrix {
+    return (1.0f - share) * raw + share * neuroskinning_rows(inputs, second, options.neuroskinning.geometric_share, warnings);
+  });
 }
 
 void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances, const RignetOptions& options, RigReport& report) {
@@ -362,7 +368,7 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
       "skin network", [&] { return predict_weights(list, skeleton.size(), distances, body, models, options.ablation, report.warnings); });
   SkinPredictionOptions finish = options.skin;
   if (const auto* second = models.neuroskinning(); second && options.ablation.neuroskinning > 0.0f && skeleton.size() > 1) {
-    raw = stages.run("second network", [&] { return heard_beside(raw, *second, skeleton, body, options, report.warnings); });
+    raw = heard_beside(raw, *second, skeleton, body, options, stages, report.warnings);
     finish.smooth = finish.smooth.value_or(0);  // a mean of three is smooth by itself, and few are sure of what is little
     finish.prune_share = finish.prune_share.value_or(0.1f);
   }

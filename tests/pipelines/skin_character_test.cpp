@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
+#include "osteon/base/random.h"
 #include "osteon/mesh/shapes.h"
 #include "osteon/pipelines/skeleton_fit.h"
 #include "osteon/pipelines/skin_quality.h"
 #include "osteon/synth/character.h"
+#include "skin/heaps.h"
 #include "support/expect.h"
 
 namespace osteon::pipelines {
@@ -78,6 +80,20 @@ TEST(SkinCharacter, networks_heard_together_differ_from_either_and_are_valid) {
   validate(both, rig.mesh.positions.size(), rig.skeleton.size());
   EXPECT_NE(both, one);
   EXPECT_NE(both, other);
+}
+
+TEST(SkinCharacter, by_networks_every_vertex_of_a_heap_of_pieces_has_weights) {
+  static const auto models = infer::RignetModels::load();
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(seed);
+    const TriangleMesh mesh = test::heap_of_pieces(random);
+    const Skeleton skeleton = test::any_skeleton(random);
+    SCOPED_TRACE(seed);
+    SkinCharacterOptions options;
+    options.rignet = &models;
+    if (seed % 2 == 0) options.neuroskinning = models.neuroskinning();
+    test::expect_exact(skin_character(mesh, skeleton, options).weights, mesh, skeleton);
+  }
 }
 
 TEST(SkinQuality, a_skin_by_its_own_bones_leaks_less_than_one_by_any) {

@@ -154,9 +154,8 @@ void add_method_options(CLI::App& command, SkinArguments& arguments) {
   command.add_option("--from", arguments.from, "For --method transfer: the rigged mesh whose weights to take")->type_name("FILE");
   auto& bind = arguments.options.bind;
   command.add_option("--smooth", bind.smooth, "Rounds of smoothing (default: what suits the method)")->check(CLI::Range(0, 100));
-  command.add_option("--prune", bind.prune_share, "Weights below this share of a vertex's largest go")
-      ->check(CLI::Range(0.0f, 1.0f))
-      ->capture_default_str();
+  command.add_option("--prune", bind.prune_share, "Weights below this share of a vertex's largest go (default: what suits the method)")
+      ->check(CLI::Range(0.0f, 1.0f));
   command.add_option("--max-influences", arguments.save.max_influences, "Joints that may move one vertex")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();

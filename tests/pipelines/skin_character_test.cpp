@@ -70,6 +70,29 @@ TEST(SkinCharacter, by_networks_a_small_island_follows_one_joint) {
   }
 }
 
+TEST(SkinCharacter, networks_smooth_and_prune_as_they_are_told) {
+  static const auto models = infer::RignetModels::load();
+  const Rig rig = biped();
+  const auto influences = [&](SkinCharacterOptions options) {
+    const SkinWeights weights = skin_character(rig.mesh, rig.skeleton, options).weights;
+    std::size_t sum = 0;
+    for (VertexId v : rig.mesh.positions.ids()) sum += weights[v].size();
+    return sum;
+  };
+  for (const bool neuro : {false, true}) {
+    SkinCharacterOptions options;
+    if (neuro)
+      options.neuroskinning = models.neuroskinning();
+    else
+      options.rignet = &models;
+    SkinCharacterOptions pruned = options, smooth = options;
+    pruned.bind.prune_share = 0.9f;
+    smooth.bind.smooth = 4;
+    EXPECT_LT(influences(pruned), influences(options));
+    EXPECT_GT(influences(smooth), influences(options));
+  }
+}
+
 TEST(SkinCharacter, networks_heard_together_differ_from_either_and_are_valid) {
   static const auto models = infer::RignetModels::load();
   const Rig rig = biped();

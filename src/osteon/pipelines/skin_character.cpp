@@ -14,6 +14,8 @@ skin::Binding by_rignet(const TriangleMesh& mesh, const Skeleton& skeleton, cons
   RignetOptions rignet;
   rignet.skeleton = skeleton;
   rignet.skin.max_influences = options.bind.max_influences;
+  rignet.skin.smooth = options.bind.smooth;
+  rignet.skin.prune_share = options.bind.prune_share;
   rignet.skin.rigid_islands = options.bind.islands == skin::Islands::rigid;
   if (!options.neuroskinning) rignet.ablation.neuroskinning = 0.0f;
   RignetResult result = rig_character(mesh, *options.rignet, rignet);
@@ -23,6 +25,8 @@ skin::Binding by_rignet(const TriangleMesh& mesh, const Skeleton& skeleton, cons
 skin::Binding by_neuroskinning(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
   NeuroskinningOptions neuro;
   neuro.max_influences = options.bind.max_influences;
+  neuro.smooth = options.bind.smooth.value_or(neuro.smooth);
+  neuro.prune_share = options.bind.prune_share.value_or(neuro.prune_share);
   neuro.rigid_islands = options.bind.islands == skin::Islands::rigid;
   NeuroskinningResult result = neuroskinning_weights(mesh, skeleton, *options.neuroskinning, neuro);
   return {std::move(result.weights), {}, result.rigid_islands, std::move(result.warnings), std::move(result.repairs)};

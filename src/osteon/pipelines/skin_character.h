@@ -12,8 +12,8 @@
 namespace osteon::pipelines {
 
 struct SkinCharacterOptions {
-  skin::BindOptions bind = {};                          // of the geometric methods; influences, pruning and locked joints of all
-  const infer::RignetModels* rignet = {};               // the networks bind, and `bind.method` is not read; may be null
+  skin::BindOptions bind = {};             // of the geometric methods; smoothing, pruning, influences, islands and locked joints of all
+  const infer::RignetModels* rignet = {};  // the networks bind, and `bind.method` is not read; may be null
   const infer::NeuroskinningModel* neuroskinning = {};  // the same; with `rignet`, both as `rig` does it, by the NeuroSkinning in there
   bool mirror = false;                                  // make the two halves of a symmetric character equal, bit by bit
 };

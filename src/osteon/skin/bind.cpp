@@ -111,7 +111,7 @@ Binding bind(const TriangleMesh& mesh, const Skeleton& skeleton, const BindOptio
   if (options.islands == Islands::rigid && options.method != Method::transfer)
     out.rigid_islands = make_islands_rigid(rows, body.clean.mesh, options.island);
   if (rounds(options) > 0) rows = smoothed(std::move(rows), geometry::one_ring(body.clean.mesh), rounds(options));
-  prune(rows, options.prune_share, options.max_influences);
+  prune(rows, options.prune_share.value_or(0.05f), options.max_influences);
   out.weights = to_skin_weights(rows, body.clean.from_original);
   if (!options.locked.empty()) out.weights = with_locked(out.weights, options.before.value(), options.locked, options.max_influences);
   for (const VertexId v : body.clean.from_original) out.distances.push_back(body.distances.of(v).front().distance);

@@ -32,9 +32,9 @@ struct BindOptions {
   Method method = Method::geovoxel;
   int resolution = 256;  // of the lattice, along the longest side
   FalloffOptions falloff;
-  std::optional<int> smooth = {};  // rounds; else 1 for geovoxel and biharmonic, none for the others
-  float prune_share = 0.05f;       // weights below this share of a vertex's largest go
-  std::size_t max_influences = 4;  // per vertex
+  std::optional<int> smooth = {};         // rounds; else 1 for geovoxel and biharmonic, none for the others
+  std::optional<float> prune_share = {};  // weights below this share of a vertex's largest go; else 0.05
+  std::size_t max_influences = 4;         // per vertex
   Islands islands = Islands::rigid;
   IslandOptions island;
   std::optional<Rig> from = {};  // for Method::transfer: the other mesh, in the same space

@@ -92,7 +92,8 @@ skin::Binding bound(const SkinArguments& arguments, const io::Asset& body, const
   if (arguments.method == "rignet" || arguments.method == "networks") {
     const infer::RignetModels models = arguments.models.load();
     options.rignet = &models;
-    if (arguments.method == "networks") options.neuroskinning = models.neuroskinning();
+    if (arguments.method == "networks" && !(options.neuroskinning = models.neuroskinning()))
+      throw Error("--method networks: the models have no neuroskinning.safetensors, expected both networks (or --method rignet)");
     return pipelines::skin_character(body.mesh, skeleton, options);
   }
   if (arguments.method == "neuroskinning") {

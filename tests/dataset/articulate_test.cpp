@@ -8,15 +8,6 @@
 namespace osteon::dataset {
 namespace {
 
-const PreparedCharacter& capsule() {
-  static const PreparedCharacter prepared = [] {
-    PrepareOptions options;
-    options.working_mesh = {300, 200, 5000};
-    return prepare(test::capsule_character(), {"capsule", "capsules", "other"}, options);
-  }();
-  return prepared;
-}
-
 // A trunk in the plane x = 0, two arms that mirror one another.
 Skeleton figure() {
   Skeleton s;
@@ -53,12 +44,12 @@ TEST(RandomArticulation, changes_both_sides_alike_when_asked_to) {
 }
 
 TEST(Articulated, joints_axes_turn_with_their_parts) {
-  Articulation a{PerJoint<Eigen::Matrix3f>(3, Eigen::Matrix3f::Identity()), capsule().skeleton.rest_positions};
+  Articulation a{PerJoint<Eigen::Matrix3f>(3, Eigen::Matrix3f::Identity()), test::prepared_capsule().skeleton.rest_positions};
   const Quatf turn(Eigen::AngleAxisf(0.4f, Vec3f::UnitZ()));
   a.linear[JointId{1}] = 1.3f * turn.toRotationMatrix();
-  const PreparedCharacter changed = articulated(capsule(), a);
+  const PreparedCharacter changed = articulated(test::prepared_capsule(), a);
   for (const std::uint16_t j : {0, 1, 2}) {
-    const Quatf& before = capsule().skeleton.rest_orientations[JointId{j}];
+    const Quatf& before = test::prepared_capsule().skeleton.rest_orientations[JointId{j}];
     EXPECT_LT(changed.skeleton.rest_orientations[JointId{j}].angularDistance(j == 1 ? turn * before : before), 1e-3f);
   }
 }
@@ -94,23 +85,24 @@ TEST(WithSizes, stretches_the_bones_of_a_pose_and_leaves_its_turns) {
 
 // Doing nothing gives what prepare() gave, but for the scale: that was of the original's box, and the reduced mesh fills it less.
 TEST(Articulated, derives_the_same_as_preparing) {
-  const Skeleton& rest = capsule().skeleton;
+  const Skeleton& rest = test::prepared_capsule().skeleton;
   const Articulation nothing{PerJoint<Eigen::Matrix3f>(rest.size(), Eigen::Matrix3f::Identity()), rest.rest_positions};
-  PreparedCharacter same = articulated(capsule(), nothing);
+  PreparedCharacter same = articulated(test::prepared_capsule(), nothing);
   derive_from_shape(same, Parts::skin);
-  for (VertexId v : same.mesh.positions.ids()) EXPECT_LT((same.mesh.positions[v] - capsule().mesh.positions[v]).norm(), 2e-3f);
-  EXPECT_LT((same.nearest_distances - capsule().nearest_distances).cwiseAbs().maxCoeff(), 5e-3f);
+  for (VertexId v : same.mesh.positions.ids())
+    EXPECT_LT((same.mesh.positions[v] - test::prepared_capsule().mesh.positions[v]).norm(), 2e-3f);
+  EXPECT_LT((same.nearest_distances - test::prepared_capsule().nearest_distances).cwiseAbs().maxCoeff(), 5e-3f);
   derive_from_shape(same, Parts::joints);
   int other = 0;
-  for (std::size_t v = 0; v < same.vertices(); ++v) other += same.attention[v] != capsule().attention[v] ? 1 : 0;
+  for (std::size_t v = 0; v < same.vertices(); ++v) other += same.attention[v] != test::prepared_capsule().attention[v] ? 1 : 0;
   EXPECT_LE(other, static_cast<int>(same.vertices() / 20));  // at the rim of a marked region
 }
 
 TEST(Articulated, stays_in_the_frame_of_the_networks_with_joints_inside) {
   Random random(7);
   for (int i = 0; i < 5; ++i) {
-    const Articulation bent = random_articulation(capsule().skeleton, std::nullopt, {.largest_bend = 0.6f}, random);
-    PreparedCharacter out = articulated(capsule(), bent);
+    const Articulation bent = random_articulation(test::prepared_capsule().skeleton, std::nullopt, {.largest_bend = 0.6f}, random);
+    PreparedCharacter out = articulated(test::prepared_capsule(), bent);
     derive_from_shape(out, Parts::pairs);
     Eigen::AlignedBox3f box;
     for (const Vec3f& p : out.mesh.positions) box.extend(p);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "osteon/dataset/prepared.h"
 #include "osteon/mesh/shapes.h"
 #include "osteon/rig/rig.h"
 
@@ -22,6 +23,16 @@ inline Rig capsule_character() {
     rig.weights.append(std::vector<Influence>{{low, 1.0f - to_middle}, {middle, to_middle - to_high}, {high, to_high}});
   }
   return rig;
+}
+
+// The same as the trainer holds it, at about 300 vertices.
+inline const dataset::PreparedCharacter& prepared_capsule() {
+  static const dataset::PreparedCharacter prepared = [] {
+    dataset::PrepareOptions options;
+    options.working_mesh = {300, 200, 5000};
+    return dataset::prepare(capsule_character(), {"capsule", "capsules", "other"}, options);
+  }();
+  return prepared;
 }
 
 }  // namespace osteon::test

@@ -13,15 +13,6 @@ namespace {
 
 constexpr float kRightAngle = 0.5f * std::numbers::pi_v<float>;
 
-const PreparedCharacter& capsule() {
-  static const PreparedCharacter prepared = [] {
-    PrepareOptions options;
-    options.working_mesh = {300, 200, 5000};
-    return prepare(test::capsule_character(), {"capsule", "capsules", "other"}, options);
-  }();
-  return prepared;
-}
-
 Quatf about_z(float angle) { return Quatf(Eigen::AngleAxisf(angle, Vec3f::UnitZ())); }
 
 // The capsule's own clip, in its file's frame: it bends in the middle by each of the angles.
@@ -36,21 +27,22 @@ Motion bending(const std::vector<float>& angles) {
 }
 
 TEST(OwnPose, the_rest_pose_of_a_clip_gives_the_rest_mesh) {
-  const Articulation rest = own_pose(capsule(), bending({0.0f}), 0);
-  for (JointId j : capsule().skeleton.names.ids()) EXPECT_VEC3_NEAR(rest.joints[j], capsule().skeleton.rest_positions[j], 1e-5f);
-  PreparedCharacter same = capsule();
+  const Articulation rest = own_pose(test::prepared_capsule(), bending({0.0f}), 0);
+  for (JointId j : test::prepared_capsule().skeleton.names.ids())
+    EXPECT_VEC3_NEAR(rest.joints[j], test::prepared_capsule().skeleton.rest_positions[j], 1e-5f);
+  PreparedCharacter same = test::prepared_capsule();
   normalise_again(same);  // the reduced mesh fills its box a little less
-  const PreparedCharacter posed = articulated(capsule(), rest);
+  const PreparedCharacter posed = articulated(test::prepared_capsule(), rest);
   for (VertexId v : same.mesh.positions.ids()) EXPECT_VEC3_NEAR(posed.mesh.positions[v], same.mesh.positions[v], 1e-5f);
 }
 
 TEST(OwnPose, joints_stand_where_the_clip_has_them_and_bones_keep_their_lengths) {
   const Motion motion = bending({0.5f, kRightAngle});
-  const Skeleton& rest = capsule().skeleton;
+  const Skeleton& rest = test::prepared_capsule().skeleton;
   for (std::size_t pose = 0; pose < 2; ++pose) {
-    const Articulation a = own_pose(capsule(), motion, pose);
+    const Articulation a = own_pose(test::prepared_capsule(), motion, pose);
     for (JointId j : rest.names.ids())
-      EXPECT_VEC3_NEAR(a.joints[j], capsule().normalization.apply(motion.poses[pose][index(j)].translation()), 1e-5f);
+      EXPECT_VEC3_NEAR(a.joints[j], test::prepared_capsule().normalization.apply(motion.poses[pose][index(j)].translation()), 1e-5f);
     for (const Bone& bone : bones(rest))
       if (bone.end) EXPECT_NEAR((a.joints[*bone.end] - a.joints[bone.start]).norm(), (bone.segment.b - bone.segment.a).norm(), 1e-5f);
   }
@@ -58,9 +50,9 @@ TEST(OwnPose, joints_stand_where_the_clip_has_them_and_bones_keep_their_lengths)
 
 TEST(OwnPose, joints_that_the_clip_does_not_name_follow_the_joint_above) {
   Motion motion = bending({kRightAngle});
-  const Articulation whole = own_pose(capsule(), motion, 0);
+  const Articulation whole = own_pose(test::prepared_capsule(), motion, 0);
   motion.names[2] = "?";
-  const Articulation without = own_pose(capsule(), motion, 0);
+  const Articulation without = own_pose(test::prepared_capsule(), motion, 0);
   EXPECT_VEC3_NEAR(without.joints[JointId{2}], whole.joints[JointId{2}], 1e-5f);
   EXPECT_TRUE(without.linear[JointId{2}].isApprox(whole.linear[JointId{2}], 1e-5f));
 }
@@ -69,7 +61,7 @@ std::vector<Articulation> poses_of(const Motion& motion, std::size_t count) {
   MotionLibrary library;
   library.own["capsule"] = motion;
   Random random(1);
-  return motion_poses(capsule(), library, count, random);
+  return motion_poses(test::prepared_capsule(), library, count, random);
 }
 
 float bend_of(const Articulation& pose) {
@@ -110,7 +102,7 @@ TEST(MotionPoses, none_for_a_character_without_a_clip_that_is_no_biped) {
   MotionLibrary library;
   library.bipeds.push_back(test::clip_of(test::biped(false), {{"Spine", about_z(0.5f)}}));
   Random random(1);
-  EXPECT_TRUE(motion_poses(capsule(), library, 4, random).empty());
+  EXPECT_TRUE(motion_poses(test::prepared_capsule(), library, 4, random).empty());
 }
 
 }  // namespace

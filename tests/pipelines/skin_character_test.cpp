@@ -2,6 +2,7 @@
 #include "osteon/pipelines/skin_character.h"
 
 #include <algorithm>
+#include <set>
 
 #include "osteon/base/random.h"
 #include "osteon/mesh/shapes.h"
@@ -48,25 +49,38 @@ TEST(SkinCharacter, mirror_says_so_where_nothing_is_symmetric) {
   EXPECT_THAT(test::error_of([&] { skin_character(rig.mesh, rig.skeleton, options); }), testing::HasSubstr("mirror"));
 }
 
-// A bracelet of one piece: nearly all of it is its arm's, but the networks say so of each vertex by itself.
-TEST(SkinCharacter, by_networks_a_small_island_follows_one_joint) {
+// Beads along an arm from its joint on: where weights of two bones meet, at least one of them would bend.
+TEST(SkinCharacter, by_networks_a_small_island_follows_one_joint_unless_it_may_deform) {
   static const auto models = infer::RignetModels::load();
   const Rig rig = biped();
   const auto bone_list = bones(rig.skeleton);
   const auto arm = std::ranges::max_element(bone_list, {}, [](const Bone& b) { return b.end ? std::abs(b.segment.b.x()) : 0.0f; });
   const std::size_t body = rig.mesh.positions.size();
-  const TriangleMesh bead =
-      shapes::transformed(shapes::icosphere(2, 0.02f), Transform(Eigen::Translation3f(0.5f * (arm->segment.a + arm->segment.b))));
-  const TriangleMesh mesh = shapes::merged(rig.mesh, bead);
+  TriangleMesh mesh = rig.mesh;
+  constexpr std::size_t beads = 6;
+  const TriangleMesh bead = shapes::icosphere(2, 0.03f);
+  for (std::size_t k = 0; k < beads; ++k)
+    mesh = shapes::merged(
+        mesh, shapes::transformed(
+                  bead, Transform(Eigen::Translation3f(arm->segment.a + 0.05f * static_cast<float>(k) * (arm->segment.b - arm->segment.a) +
+                                                       Vec3f(0, 0, 0.3f + 0.08f * static_cast<float>(k))))));
+  const auto bending_beads = [&](const SkinCharacterOptions& options) {
+    const SkinWeights weights = skin_character(mesh, rig.skeleton, options).weights;
+    validate(weights, mesh.positions.size(), rig.skeleton.size());
+    std::size_t bending = 0;
+    for (std::size_t k = 0; k < beads; ++k) {
+      std::set<JointId> joints;
+      for (std::size_t v = 0; v < bead.positions.size(); ++v)
+        for (const Influence& i : weights[static_cast<VertexId>(body + k * bead.positions.size() + v)]) joints.insert(i.joint);
+      bending += joints.size() > 1 ? 1 : 0;
+    }
+    return bending;
+  };
   for (const bool both : {false, true}) {
     SkinCharacterOptions options{.rignet = &models, .neuroskinning = both ? models.neuroskinning() : nullptr};
-    const skin::Binding rigid = skin_character(mesh, rig.skeleton, options);
-    validate(rigid.weights, mesh.positions.size(), rig.skeleton.size());
-    const JointId joint = rigid.weights[static_cast<VertexId>(body)].front().joint;
-    for (std::size_t v = body; v < mesh.positions.size(); ++v) {
-      ASSERT_EQ(rigid.weights[static_cast<VertexId>(v)].size(), 1u);
-      EXPECT_EQ(rigid.weights[static_cast<VertexId>(v)].front().joint, joint);
-    }
+    const std::size_t rigid = bending_beads(options);
+    options.bind.islands = skin::Islands::deform;
+    EXPECT_LT(rigid, bending_beads(options));
   }
 }
 

@@ -19,12 +19,14 @@
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/pipelines/joint_votes.h"
 #include "osteon/pipelines/mirrored_skin.h"
+#include "osteon/pipelines/neuroskinning.h"
 #include "osteon/skin/distance_weights.h"
 
 namespace osteon::pipelines {
 namespace {
 
 constexpr std::size_t kGeodesicNeighbours = 10;  // of a vertex, as in training (dataset::BatchOptions)
+constexpr float kGeometricShare = 0.5f;          // in NeuroSkinning's part of the weights: a third of all, as each network has
 constexpr float kReach = 0.2f;                   // a vertex farther than this from all bones is not covered
 
 // Runs the stages one after the other: tells the progress, and notes how long each took.
@@ -318,17 +320,15 @@ Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const
 
 // The mean of the binding network's weights and NeuroSkinning's (its own, with geodesic voxel binding in it): they learned the same from
 // different evidence, and err in different places.
-Matrix heard_beside(const Matrix& raw, const infer::NeuroskinningModel& second, const Skeleton& skeleton, const Body& body,
-                    const RignetOptions& options, Stages& stages, std::vector<std::string>& warnings) {
+Matrix heard_beside(const Matrix& raw, const infer::NeuroskinningModel& second, const Skeleton& skeleton, const Body& body, float share,
+                    Stages& stages, std::vector<std::string>& warnings) {
   Skeleton placed = skeleton;
   for (Vec3f& p : placed.rest_positions) p = body.working.normalization.apply(p);
   const TriangleMesh& mesh = body.working.mesh;
   const auto near = stages.run("wide neighbourhoods", [&] { return neuroskinning_neighbours(mesh); });
-  const auto inputs = stages.run(
-      "joint choices", [&] { return neuroskinning_inputs(mesh, body.ring, near, placed, second, options.neuroskinning.choices); });
-  const float share = options.ablation.neuroskinning;
+  const auto inputs = stages.run("joint choices", [&] { return neuroskinning_inputs(mesh, body.ring, near, placed, second); });
   return stages.run("second network", [&]() -> Matrix {
-    return (1.0f - share) * raw + share * neuroskinning_rows(inputs, second, options.neuroskinning.geometric_share, warnings);
+    return (1.0f - share) * raw + share * neuroskinning_rows(inputs, second, kGeometricShare, warnings);
   });
 }
 
@@ -368,7 +368,7 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
       "skin network", [&] { return predict_weights(list, skeleton.size(), distances, body, models, options.ablation, report.warnings); });
   SkinPredictionOptions finish = options.skin;
   if (const auto* second = models.neuroskinning(); second && options.ablation.neuroskinning > 0.0f && skeleton.size() > 1) {
-    raw = heard_beside(raw, *second, skeleton, body, options, stages, report.warnings);
+    raw = heard_beside(raw, *second, skeleton, body, options.ablation.neuroskinning, stages, report.warnings);
     finish.smooth = finish.smooth.value_or(0);  // a mean of three is smooth by itself, and few are sure of what is little
     finish.prune_share = finish.prune_share.value_or(0.1f);
   }

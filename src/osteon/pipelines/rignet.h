@@ -9,7 +9,6 @@
 #include "osteon/pipelines/body_frame.h"
 #include "osteon/pipelines/confidence.h"
 #include "osteon/pipelines/joint_extraction.h"
-#include "osteon/pipelines/neuroskinning.h"
 #include "osteon/pipelines/rig_report.h"
 #include "osteon/pipelines/skeleton_tree.h"
 #include "osteon/pipelines/skin_prediction.h"
@@ -40,8 +39,7 @@ struct RignetOptions {
   geometry::WorkingMeshOptions working_mesh = {};
   JointExtractionOptions extraction = {};  // its bandwidth and number of joints are not read
   TreeOptions tree = {};
-  NeuroskinningOptions neuroskinning = {.geometric_share = 0.5f};  // where the models have it; how it finishes weights is not read
-  SkinPredictionOptions skin = {};                                 // with the number of influences
+  SkinPredictionOptions skin = {};  // with the number of influences
   Ablation ablation = {};
 };
 

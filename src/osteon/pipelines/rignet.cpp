@@ -26,7 +26,7 @@ namespace osteon::pipelines {
 namespace {
 
 constexpr std::size_t kGeodesicNeighbours = 10;  // of a vertex, as in training (dataset::BatchOptions)
-constexpr float kGeometricShare = 0.5f;          // in NeuroSkinning's part of the weights: a third of all, as each network has
+constexpr float kGeometricShare = 0.5f;          // in NeuroSkinning's part of the weights: a quarter of all
 constexpr float kReach = 0.2f;                   // a vertex farther than this from all bones is not covered
 
 // Runs the stages one after the other: tells the progress, and notes how long each took.

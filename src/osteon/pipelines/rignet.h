@@ -25,7 +25,7 @@ struct Ablation {
   bool views = true;                 // false: the network sees the character once, as it is
   bool bone_network = true;          // false: the nearer two joints are, the likelier a bone joins them
   bool geodesic = true;              // false: a bone is as far from a vertex as in a straight line
-  float neuroskinning = 0.67f;       // its share in the weights, beside the binding network's; 0: that one alone
+  float neuroskinning = 0.5f;        // its share in the weights, beside the binding network's; 0: that one alone
   int bones = geometry::kBindBones;  // a vertex chooses from so many at most, 1..kBindBones
 };
 

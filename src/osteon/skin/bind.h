@@ -36,7 +36,7 @@ struct BindOptions {
   std::optional<float> prune_share = {};  // weights below this share of a vertex's largest go; else 0.05
   std::size_t max_influences = 4;         // per vertex
   Islands islands = Islands::rigid;
-  IslandOptions island;
+  IslandOptions island = {.largest = 0.7f, .second = 0.7f};  // geometry alone is less sure of small parts than networks are
   std::optional<Rig> from = {};  // for Method::transfer: the other mesh, in the same space
   TransferOptions transfer;
   // Joints that keep the weights which they have in `before`; what is left is shared by the others.

@@ -14,6 +14,9 @@
 namespace osteon::skin {
 namespace {
 
+// What NeuroSkinning learned with; geodesic voxel binding itself has others by now.
+constexpr FalloffOptions kFalloff{.power = 12.0f, .margin = 0.002f};
+
 geometry::BoneList list_of(std::span<const Bone> bones) {
   geometry::BoneList list;
   for (const Bone& bone : bones) {
@@ -36,7 +39,7 @@ BoneChoices bone_choices(const TriangleMesh& mesh, const Skeleton& skeleton, con
   const std::vector<Bone> bones = binding_bones(skeleton, body);
   BoneDistances distances = bone_distances(body, bones);
   lengthen_past_ends(distances, mesh.positions, bones, skeleton);
-  WeightRows shares = falloff_weights(distances, bones, bounds(mesh).sizes().maxCoeff());
+  WeightRows shares = falloff_weights(distances, bones, bounds(mesh).sizes().maxCoeff(), kFalloff);
   make_islands_rigid(shares, mesh);
   shares = smoothed(std::move(shares), geometry::one_ring(mesh), 1);
 

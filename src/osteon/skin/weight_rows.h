@@ -17,8 +17,8 @@ using WeightRow = std::vector<Influence>;
 using WeightRows = PerVertex<WeightRow>;
 
 struct FalloffOptions {
-  float power = 12.0f;    // of 1 / distance
-  float margin = 0.002f;  // added to every distance; longest side 1
+  float power = 10.0f;    // of 1 / distance
+  float margin = 0.005f;  // added to every distance; longest side 1
 };
 
 // Each joint's share by the distance of its nearest bone: (d + margin)^-power, sums 1. After Dionne and de Lasa 2013, sec. 5, with their

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh bound to a skeleton that is there already, as users do it.
+#ifdef OSTEON_HAVE_ASSIMP
+#include <assimp/scene.h>
+
+#include <assimp/Exporter.hpp>
+#include <assimp/Importer.hpp>
+#endif
+
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "osteon/base/error.h"
@@ -100,6 +108,31 @@ TEST_F(SkinCommand, the_characters_own_skeleton_keeps_its_bytes) {
   EXPECT_EQ(after["skins"][0]["joints"], before["skins"][0]["joints"]);
   EXPECT_EQ(io::load(folder_ / "out.glb").skeleton->rest_orientations, io::load(folder_ / "hero.glb").skeleton->rest_orientations);
 }
+
+#ifdef OSTEON_HAVE_ASSIMP
+// Assimp writes the FBX, as another program would.
+TEST_F(SkinCommand, the_skeleton_of_an_fbx_stays_as_it_was_read_but_for_rounding) {
+  Assimp::Importer importer;
+  Assimp::Exporter exporter;
+  const aiScene* scene = importer.ReadFile((folder_ / "hero.glb").string(), 0);
+  ASSERT_TRUE(scene) << importer.GetErrorString();
+  ASSERT_EQ(exporter.Export(scene, "fbxa", (folder_ / "hero.fbx").string()), aiReturn_SUCCESS) << exporter.GetErrorString();
+  const auto run = osteon(folder_, "skin body.obj --skeleton hero.fbx -o out.glb");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Skeleton in = io::load_skeleton_file(folder_ / "hero.fbx").skeleton, out = *io::load(folder_ / "out.glb").skeleton;
+  EXPECT_EQ(out.names, in.names);
+  EXPECT_EQ(out.parents, in.parents);
+  EXPECT_THAT(run.err, HasSubstr("scaled by 100"));  // Assimp writes metres where FBX has centimetres
+  for (JointId j : out.names.ids()) {
+    EXPECT_VEC3_NEAR(out.rest_positions[j], 100.0f * in.rest_positions[j], 1e-6f) << out.names[j];
+    EXPECT_LT(out.rest_orientations[j].angularDistance(in.rest_orientations[j]), 2e-6f) << out.names[j];
+  }
+  std::map<std::string, Vec3f> artists;
+  for (JointId j : rig_.skeleton.names.ids()) artists["mixamorig:" + rig_.skeleton.names[j]] = rig_.skeleton.rest_positions[j];
+  ASSERT_EQ(out.size(), artists.size());
+  for (JointId j : out.names.ids()) EXPECT_VEC3_NEAR(out.rest_positions[j], artists.at(out.names[j]), 1e-4f) << out.names[j];
+}
+#endif
 
 TEST_F(SkinCommand, a_skeleton_in_centimetres_is_brought_to_the_body_by_one_node_above_it) {
   io::Asset asset;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -15,82 +16,35 @@ namespace {
 
 using Box = Eigen::AlignedBox3f;
 
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kLeafSize = TriangleBlock::kSize;
 constexpr int kBins = 16;
 constexpr int kSplitByAreaDepth = 48;  // below it ranges are halved, so that the depth stays under 48 + 32
-constexpr int kStack = 96;
+constexpr int kStack = 3 * (kSplitByAreaDepth + 32) + 4;
+
+// Four at once: the compiler's own vectors, as it does not see them in loops.
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
+using Doubles = double __attribute__((vector_size(32)));
+
+Floats all(float x) { return Floats{x, x, x, x}; }
+
+Floats lanes(const std::array<float, 4>& numbers) {
+  Floats out;
+  std::memcpy(&out, numbers.data(), sizeof out);
+  return out;
+}
+
+std::array<float, 4> numbers(Floats lanes) {
+  std::array<float, 4> out;
+  std::memcpy(out.data(), &lanes, sizeof lanes);
+  return out;
+}
 
 float half_area(const Box& box) {
   const Vec3f s = box.sizes();
   return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
 }
-
-// A ray with what the tests of boxes and triangles need, computed once.
-struct Ray {
-  Vec3f origin, inverse;
-  std::array<std::size_t, 3> axis;  // the direction's largest component last
-  std::array<float, 3> at;          // the origin along these
-  Vec3f shear;
-
-  Ray(const Vec3f& o, const Vec3f& direction) : origin(o), inverse(direction.cwiseInverse()) {
-    int z = 0;
-    direction.cwiseAbs().maxCoeff(&z);
-    int x = (z + 1) % 3, y = (z + 2) % 3;
-    if (direction[z] < 0) std::swap(x, y);  // keeps the winding
-    axis = {static_cast<std::size_t>(x), static_cast<std::size_t>(y), static_cast<std::size_t>(z)};
-    at = {o[x], o[y], o[z]};
-    shear = Vec3f(direction[x] / direction[z], direction[y] / direction[z], 1 / direction[z]);
-  }
-
-  // Where the ray enters the box, if it does so before `limit`. A zero component of the direction makes infinities of the right sign, and
-  // NaN where the origin lies in a face of the box: comparisons with NaN are false, so that such an axis does not limit the ray.
-  std::optional<float> enters(const Vec3f& low, const Vec3f& high, float limit) const {
-    float near = 0, far = limit;
-    for (int k = 0; k < 3; ++k) {
-      const float in = ((inverse[k] < 0 ? high[k] : low[k]) - origin[k]) * inverse[k];
-      const float out = ((inverse[k] < 0 ? low[k] : high[k]) - origin[k]) * inverse[k] * 1.0000004f;  // upward rounding: Ize, JCGT 2013
-      if (in > near) near = in;
-      if (out < far) far = out;
-    }
-    return near <= far ? std::optional(near) : std::nullopt;
-  }
-
-  // Distances to the triangles, by the signs of the three edge functions in the plane across the ray (Woop et al. 2013); infinite where it
-  // misses them. Products of the sheared corners are exact in double, so the edge functions of two faces agree on their common edge.
-  std::array<float, TriangleBlock::kSize> meets(const TriangleBlock& block) const {
-    constexpr std::size_t n = TriangleBlock::kSize;
-    double ax[n], ay[n], az[n], bx[n], by[n], bz[n], cx[n], cy[n], cz[n];
-    shear_corner(block.a, ax, ay, az);
-    shear_corner(block.b, bx, by, bz);
-    shear_corner(block.c, cx, cy, cz);
-    std::array<float, n> out;
-    for (std::size_t l = 0; l < n; ++l) {
-      const double u = cx[l] * by[l] - cy[l] * bx[l];
-      const double v = ax[l] * cy[l] - ay[l] * cx[l];
-      const double w = bx[l] * ay[l] - by[l] * ax[l];
-      const double sum = u + v + w;  // 0: without area, or seen edge-on
-      const double least = std::min(std::min(u, v), w), most = std::max(std::max(u, v), w);
-      const auto distance = static_cast<float>((u * az[l] + v * bz[l] + w * cz[l]) / sum);
-      const bool is_hit = !(least < 0 && most > 0) && sum != 0 && distance >= 0;
-      out[l] = is_hit ? distance : std::numeric_limits<float>::infinity();
-    }
-    return out;
-  }
-
- private:
-  // The points with the origin at 0 and the ray along z.
-  void shear_corner(const TriangleBlock::Corner& corner, double* x, double* y, double* z) const {
-    const float* in_x = corner[axis[0]].data();
-    const float* in_y = corner[axis[1]].data();
-    const float* in_z = corner[axis[2]].data();
-    for (std::size_t l = 0; l < TriangleBlock::kSize; ++l) {
-      const float along = in_z[l] - at[2];
-      x[l] = static_cast<double>((in_x[l] - at[0]) - shear.x() * along);
-      y[l] = static_cast<double>((in_y[l] - at[1]) - shear.y() * along);
-      z[l] = static_cast<double>(shear.z() * along);
-    }
-  }
-};
 
 // Whether an answer at (value, face) is better than the best so far: nearer, or as near and of a smaller id.
 template <class Value>
@@ -116,9 +70,32 @@ Vec3f closest_on_segments(const Eigen::Vector3d& p, const std::array<Eigen::Vect
   return weights;
 }
 
+bool is_block(std::uint32_t child) { return child >> 31 != 0; }
+
 Vec3f corner(const TriangleBlock::Corner& all, std::size_t triangle) { return {all[0][triangle], all[1][triangle], all[2][triangle]}; }
 
-float squared_distance(const Vec3f& p, const Vec3f& low, const Vec3f& high) { return (p - p.cwiseMax(low).cwiseMin(high)).squaredNorm(); }
+// Nodes still to be visited, the nearest last.
+class Waiting {
+ public:
+  struct Item {
+    std::uint32_t node;  // as in Node::child
+    float key;
+  };
+
+  bool empty() const { return size_ == 0; }
+  void push(std::uint32_t node, float key) { items_[size_++] = {node, key}; }
+  Item pop() { return items_[--size_]; }
+  // Puts the last few, those of one node, in order.
+  void sort_from(std::size_t first) {
+    for (std::size_t i = first + 1; i < size_; ++i)
+      for (std::size_t j = i; j > first && items_[j - 1].key < items_[j].key; --j) std::swap(items_[j - 1], items_[j]);
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::array<Item, kStack> items_;
+  std::size_t size_ = 0;
+};
 
 }  // namespace
 
@@ -141,16 +118,86 @@ Vec3f closest_barycentric(const Vec3f& p, const Vec3f& a, const Vec3f& b, const 
   return closest_on_segments(ap, {Eigen::Vector3d::Zero(), ab, ac});
 }
 
+// A ray with what the tests of boxes and triangles need, computed once.
+struct Bvh::Ray {
+  Vec3f origin, inverse;
+  std::array<std::size_t, 3> axis;  // the direction's largest component last
+  std::array<float, 3> at;          // the origin along these
+  Vec3f shear;
+
+  Ray(const Vec3f& o, const Vec3f& direction) : origin(o), inverse(direction.cwiseInverse()) {
+    int z = 0;
+    direction.cwiseAbs().maxCoeff(&z);
+    int x = (z + 1) % 3, y = (z + 2) % 3;
+    if (direction[z] < 0) std::swap(x, y);  // keeps the winding
+    axis = {static_cast<std::size_t>(x), static_cast<std::size_t>(y), static_cast<std::size_t>(z)};
+    at = {o[x], o[y], o[z]};
+    shear = Vec3f(direction[x] / direction[z], direction[y] / direction[z], 1 / direction[z]);
+  }
+
+  // Where the ray enters the boxes, infinite where it does not do so before `limit`. A zero component of the direction makes infinities of
+  // the right sign, and NaN where the origin lies in a face of the box: comparisons with NaN are false, so that such an axis does not limit
+  // the ray.
+  std::array<float, 4> enters(const Node& node, float limit) const {
+    Floats near = all(0.0f), far = all(limit);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float scale = inverse[static_cast<int>(k)], from = origin[static_cast<int>(k)];
+      const Floats in = (lanes(scale < 0 ? node.high[k] : node.low[k]) - from) * scale;
+      const Floats out = (lanes(scale < 0 ? node.low[k] : node.high[k]) - from) * scale * 1.0000004f;  // upward rounding: Ize, JCGT 2013
+      near = in > near ? in : near;
+      far = out < far ? out : far;
+    }
+    return numbers(near <= far ? near : all(kInfinity));
+  }
+
+  // Distances to the triangles, by the signs of the three edge functions in the plane across the ray (Woop et al. 2013); infinite where it
+  // misses them. Products of the sheared corners are exact in double, so the edge functions of two faces agree on their common edge.
+  std::array<float, 4> meets(const TriangleBlock& block) const {
+    const Sheared a = sheared(block.a), b = sheared(block.b), c = sheared(block.c);
+    const Doubles u = c.x * b.y - c.y * b.x;
+    const Doubles v = a.x * c.y - a.y * c.x;
+    const Doubles w = b.x * a.y - b.y * a.x;
+    const Doubles sum = u + v + w;  // 0: without area, or seen edge-on
+    const Doubles least_uv = v < u ? v : u, least = w < least_uv ? w : least_uv;
+    const Doubles most_uv = u < v ? v : u, most = most_uv < w ? w : most_uv;
+    const Floats distance = __builtin_convertvector((u * a.z + v * b.z + w * c.z) / sum, Floats);
+    const auto is_hit = (least >= 0) | (most <= 0);
+    const Floats met = __builtin_convertvector(is_hit & (sum != 0), Ints) & (distance >= 0) ? distance : all(kInfinity);
+    return numbers(met);
+  }
+
+ private:
+  struct Sheared {
+    Doubles x, y, z;
+  };
+
+  // The corners with the origin at 0 and the ray along z.
+  Sheared sheared(const TriangleBlock::Corner& corner) const {
+    const Floats along = lanes(corner[axis[2]]) - at[2];
+    return {__builtin_convertvector((lanes(corner[axis[0]]) - at[0]) - shear.x() * along, Doubles),
+            __builtin_convertvector((lanes(corner[axis[1]]) - at[1]) - shear.y() * along, Doubles),
+            __builtin_convertvector(shear.z() * along, Doubles)};
+  }
+};
+
 // Splits ranges of `order` top-down. The upper levels are split one after another, the subtrees below them in parallel, each into its own
 // list of nodes.
 struct Bvh::Builder {
+  // Of the tree of twos, depth first.
+  struct Pair {
+    Vec3f low, high;
+    std::uint32_t first;  // leaf: its faces in `order`; inner node: its second child (the first child follows it)
+    std::uint32_t count;  // faces of a leaf; 0 for an inner node
+
+    float half_area() const { return geometry::half_area(Box(low, high)); }
+  };
   std::vector<Box> boxes;
   std::vector<Vec3f> centres;
   std::vector<std::uint32_t> order;
   struct Subtree {
     std::size_t begin, end;
     int depth;
-    std::vector<Node> nodes;
+    std::vector<Pair> nodes;
   };
   std::vector<Subtree> subtrees;
   std::size_t subtree_size = 0;
@@ -166,22 +213,22 @@ struct Bvh::Builder {
     subtree_size = std::max<std::size_t>(1024, order.size() / 64);
   }
 
-  std::vector<Node> build() {
-    std::vector<Node> top;
+  std::vector<Pair> build() {
+    std::vector<Pair> top;
     split_top(0, order.size(), 0, top);
     parallel_for(subtrees.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) split(subtrees[s].begin, subtrees[s].end, subtrees[s].depth, subtrees[s].nodes);
     });
-    std::vector<Node> nodes;
+    std::vector<Pair> nodes;
     nodes.reserve(order.size());
     append(top, 0, nodes);
     return nodes;
   }
 
   // In `top` a node with count > 0 stands for the subtree number `first`.
-  void split_top(std::size_t begin, std::size_t end, int depth, std::vector<Node>& top) {
+  void split_top(std::size_t begin, std::size_t end, int depth, std::vector<Pair>& top) {
     const std::size_t self = top.size();
-    top.push_back(Node{Vec3f::Zero(), Vec3f::Zero(), static_cast<std::uint32_t>(subtrees.size()), static_cast<std::uint32_t>(end - begin)});
+    top.push_back(Pair{Vec3f::Zero(), Vec3f::Zero(), static_cast<std::uint32_t>(subtrees.size()), static_cast<std::uint32_t>(end - begin)});
     if (end - begin <= subtree_size) {
       subtrees.push_back({begin, end, depth, {}});
       return;
@@ -189,14 +236,14 @@ struct Bvh::Builder {
     const Box box = bounds_of(begin, end);
     const std::size_t middle = partition(begin, end, depth);
     split_top(begin, middle, depth + 1, top);
-    top[self] = Node{box.min(), box.max(), static_cast<std::uint32_t>(top.size()), 0};
+    top[self] = Pair{box.min(), box.max(), static_cast<std::uint32_t>(top.size()), 0};
     split_top(middle, end, depth + 1, top);
   }
 
-  void split(std::size_t begin, std::size_t end, int depth, std::vector<Node>& nodes) {
+  void split(std::size_t begin, std::size_t end, int depth, std::vector<Pair>& nodes) {
     const std::size_t self = nodes.size();
     const Box box = bounds_of(begin, end);
-    nodes.push_back(Node{box.min(), box.max(), static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)});
+    nodes.push_back(Pair{box.min(), box.max(), static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)});
     if (end - begin <= kLeafSize) return;
     const std::size_t middle = partition(begin, end, depth);
     split(begin, middle, depth + 1, nodes);
@@ -205,10 +252,10 @@ struct Bvh::Builder {
     split(middle, end, depth + 1, nodes);
   }
 
-  void append(const std::vector<Node>& top, std::size_t node, std::vector<Node>& nodes) {
+  void append(const std::vector<Pair>& top, std::size_t node, std::vector<Pair>& nodes) {
     const auto self = static_cast<std::uint32_t>(nodes.size());
     if (top[node].count > 0) {
-      for (Node n : subtrees[top[node].first].nodes) {
+      for (Pair n : subtrees[top[node].first].nodes) {
         if (n.count == 0) n.first += self;
         nodes.push_back(n);
       }
@@ -278,30 +325,66 @@ struct Bvh::Builder {
     }
     return cut;
   }
+
+  // The children of a node of four: those of a node of twos, and in place of the largest of them its own, while there is room.
+  static std::vector<std::uint32_t> children_of(const std::vector<Pair>& pairs, std::uint32_t node) {
+    std::vector<std::uint32_t> out{node};
+    while (out.size() < 4) {
+      const auto largest =
+          std::ranges::max_element(out, {}, [&](std::uint32_t n) { return pairs[n].count > 0 ? -1.0f : pairs[n].half_area(); });
+      if (pairs[*largest].count > 0) break;
+      const std::uint32_t second = pairs[*largest].first;
+      ++*largest;
+      out.push_back(second);
+    }
+    return out;
+  }
 };
 
 Bvh::Bvh(const TriangleMesh& mesh) {
   if (mesh.faces.empty()) return;
   Builder builder(mesh);
-  nodes_ = builder.build();
-  std::vector<Node*> leaves;
-  for (Node& node : nodes_)
-    if (node.count > 0) leaves.push_back(&node);
+  const std::vector<Builder::Pair> pairs = builder.build();
+  std::vector<const Builder::Pair*> leaves;
+  std::vector<std::uint32_t> roots{0};  // of each node, in the tree of twos
+  for (std::size_t n = 0; n < roots.size(); ++n) {
+    Node node;
+    for (auto& axis : node.low) axis.fill(kInfinity);
+    for (auto& axis : node.high) axis.fill(-kInfinity);
+    node.child.fill(0);
+    std::size_t l = 0;
+    for (const std::uint32_t child : Builder::children_of(pairs, roots[n])) {
+      const Builder::Pair& pair = pairs[child];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.low[axis][l] = pair.low[static_cast<int>(axis)];
+        node.high[axis][l] = pair.high[static_cast<int>(axis)];
+      }
+      if (pair.count > 0) {
+        node.child[l] = ~static_cast<std::uint32_t>(leaves.size());
+        leaves.push_back(&pair);
+      } else {
+        node.child[l] = static_cast<std::uint32_t>(roots.size());
+        roots.push_back(child);
+      }
+      ++l;
+    }
+    nodes_.push_back(node);
+  }
   blocks_.resize(leaves.size());
   parallel_for(leaves.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Node& leaf = *leaves[i];
+      TriangleBlock& block = blocks_[i];
+      block.count = leaves[i]->count;
       for (std::uint32_t l = 0; l < TriangleBlock::kSize; ++l) {
-        const auto face = static_cast<FaceId>(builder.order[leaf.first + std::min(l, leaf.count - 1)]);
+        const auto face = static_cast<FaceId>(builder.order[leaves[i]->first + std::min(l, block.count - 1)]);
         const auto [a, b, c] = mesh.faces[face];
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          blocks_[i].a[axis][l] = mesh.positions[a][static_cast<int>(axis)];
-          blocks_[i].b[axis][l] = mesh.positions[b][static_cast<int>(axis)];
-          blocks_[i].c[axis][l] = mesh.positions[c][static_cast<int>(axis)];
+          block.a[axis][l] = mesh.positions[a][static_cast<int>(axis)];
+          block.b[axis][l] = mesh.positions[b][static_cast<int>(axis)];
+          block.c[axis][l] = mesh.positions[c][static_cast<int>(axis)];
         }
-        blocks_[i].face[l] = face;
+        block.face[l] = face;
       }
-      leaf.first = static_cast<std::uint32_t>(i);
     }
   });
 }
@@ -311,29 +394,25 @@ std::optional<RayHit> Bvh::first_hit(const Vec3f& origin, const Vec3f& direction
   assert(std::abs(direction.squaredNorm() - 1) < 1e-3f);
   const Ray ray(origin, direction);
   RayHit best{FaceId{~0u}, max_distance};
-  std::array<std::pair<std::uint32_t, float>, kStack> stack;  // node, where the ray enters it
-  std::size_t size = 0;
-  const auto push = [&](std::uint32_t node) {
-    if (const auto near = ray.enters(nodes_[node].low, nodes_[node].high, best.distance)) stack[size++] = {node, *near};
-  };
-  push(0);
-  while (size > 0) {
-    const auto [at, near] = stack[--size];
+  Waiting waiting;  // by where the ray enters
+  waiting.push(0, 0.0f);
+  while (!waiting.empty()) {
+    const auto [at, near] = waiting.pop();
     if (near > best.distance) continue;
-    const Node& node = nodes_[at];
-    if (node.count > 0) {
-      const TriangleBlock& block = blocks_[node.first];
+    if (is_block(at)) {
+      const TriangleBlock& block = blocks_[~at];
       const auto distances = ray.meets(block);
       for (std::size_t l = 0; l < TriangleBlock::kSize; ++l)
         if (std::isfinite(distances[l]) && beats(distances[l], block.face[l], best.distance, best.face))
           best = {block.face[l], distances[l]};
       continue;
     }
-    const std::size_t before = size;
-    push(at + 1);
-    push(node.first);
-    if (size == before + 2 && stack[before].second < stack[before + 1].second)
-      std::swap(stack[before], stack[before + 1]);  // the nearer one on top
+    const Node& node = nodes_[at];
+    const auto entries = ray.enters(node, best.distance);
+    const std::size_t before = waiting.size();
+    for (std::size_t l = 0; l < 4; ++l)
+      if (entries[l] < kInfinity) waiting.push(node.child[l], entries[l]);
+    waiting.sort_from(before);
   }
   return best.face == FaceId{~0u} ? std::nullopt : std::optional(best);
 }
@@ -343,19 +422,18 @@ bool Bvh::blocked(const Segment& segment) const {
   const float length = along.norm();
   if (nodes_.empty() || length == 0) return false;
   const Ray ray(segment.a, along / length);
-  std::array<std::uint32_t, kStack> stack;
-  std::size_t size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const std::uint32_t at = stack[--size];
-    const Node& node = nodes_[at];
-    if (!ray.enters(node.low, node.high, length)) continue;
-    if (node.count > 0) {
-      if (std::ranges::min(ray.meets(blocks_[node.first])) <= length) return true;
+  Waiting waiting;
+  waiting.push(0, 0.0f);
+  while (!waiting.empty()) {
+    const std::uint32_t at = waiting.pop().node;
+    if (is_block(at)) {
+      if (std::ranges::min(ray.meets(blocks_[~at])) <= length) return true;
       continue;
     }
-    stack[size++] = node.first;
-    stack[size++] = at + 1;
+    const Node& node = nodes_[at];
+    const auto entries = ray.enters(node, length);
+    for (std::size_t l = 0; l < 4; ++l)
+      if (entries[l] < kInfinity) waiting.push(node.child[l], entries[l]);
   }
   return false;
 }
@@ -363,17 +441,15 @@ bool Bvh::blocked(const Segment& segment) const {
 ClosestPoint Bvh::closest_point(const Vec3f& p) const {
   assert(!nodes_.empty());
   ClosestPoint best{FaceId{~0u}, Vec3f::Zero(), Vec3f::Zero(), 0};
-  float best2 = std::numeric_limits<float>::infinity();
-  std::array<std::pair<std::uint32_t, float>, kStack> stack;  // node, squared distance to its box
-  std::size_t size = 0;
-  stack[size++] = {0, 0};
-  while (size > 0) {
-    const auto [at, box2] = stack[--size];
+  float best2 = kInfinity;
+  Waiting waiting;  // by the squared distance to the box
+  waiting.push(0, 0.0f);
+  while (!waiting.empty()) {
+    const auto [at, box2] = waiting.pop();
     if (box2 > best2 * 1.00001f) continue;  // the margin covers the rounding of both distances
-    const Node& node = nodes_[at];
-    if (node.count > 0) {
-      const TriangleBlock& block = blocks_[node.first];
-      for (std::uint32_t l = 0; l < node.count; ++l) {
+    if (is_block(at)) {
+      const TriangleBlock& block = blocks_[~at];
+      for (std::uint32_t l = 0; l < block.count; ++l) {
         const Vec3f a = corner(block.a, l), b = corner(block.b, l), c = corner(block.c, l);
         const Vec3f weights = closest_barycentric(p, a, b, c);
         const Vec3f position = weights.x() * a + weights.y() * b + weights.z() * c;
@@ -384,10 +460,18 @@ ClosestPoint Bvh::closest_point(const Vec3f& p) const {
       }
       continue;
     }
-    const std::uint32_t left = at + 1, right = node.first;
-    stack[size++] = {right, squared_distance(p, nodes_[right].low, nodes_[right].high)};
-    stack[size++] = {left, squared_distance(p, nodes_[left].low, nodes_[left].high)};
-    if (stack[size - 2].second < stack[size - 1].second) std::swap(stack[size - 2], stack[size - 1]);
+    const Node& node = nodes_[at];
+    std::array<float, 4> squared{};
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t l = 0; l < 4; ++l) {
+        const float q = p[static_cast<int>(k)];
+        const float beyond = std::max(std::max(node.low[k][l] - q, q - node.high[k][l]), 0.0f);
+        squared[l] += beyond * beyond;
+      }
+    const std::size_t before = waiting.size();
+    for (std::size_t l = 0; l < 4; ++l)
+      if (squared[l] <= best2 * 1.00001f && squared[l] < kInfinity) waiting.push(node.child[l], squared[l]);
+    waiting.sort_from(before);
   }
   best.distance = std::sqrt(best2);
   return best;

@@ -34,11 +34,13 @@ struct TriangleBlock {
   using Corner = std::array<std::array<float, kSize>, 3>;  // [axis][triangle]
   Corner a, b, c;
   std::array<FaceId, kSize> face;
+  std::uint32_t count;
 };
 
-// A tree of boxes over the faces of a mesh: rays and closest points in about log(faces) steps. It copies what it needs: the mesh may go.
-// Faces with equal answers (a shared edge) are resolved to the smallest FaceId, so answers do not depend on how the tree was built.
-// Built top-down by binned surface area heuristic: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
+// A tree of boxes, four to a node, over the faces of a mesh: rays and closest points in about log(faces) steps. It copies what it needs:
+// the mesh may go. Faces with equal answers (a shared edge) are resolved to the smallest FaceId, so answers do not depend on how the tree
+// was built. Built top-down by binned surface area heuristic: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007;
+// then nodes take in their largest children until they have four: Wald, Benthin, Boulos, "Getting Rid of Packets", 2008.
 class Bvh {
  public:
   explicit Bvh(const TriangleMesh& mesh);  // pre: validate(mesh) holds; a mesh without faces is allowed
@@ -55,11 +57,14 @@ class Bvh {
   ClosestPoint closest_point(const Vec3f& p) const;
 
  private:
+  // The boxes of four children, coordinate by coordinate. Where there are fewer, the rest are empty: low is infinite, high negative
+  // infinite.
   struct Node {
-    Vec3f low, high;
-    std::uint32_t first;  // leaf: its block; inner node: its second child (the first child follows it)
-    std::uint32_t count;  // triangles of a leaf; 0 for an inner node
+    using Bound = std::array<std::array<float, 4>, 3>;  // [axis][child]
+    Bound low, high;
+    std::array<std::uint32_t, 4> child;  // a node, or ~ of a block
   };
+  struct Ray;
   struct Builder;
 
   std::vector<Node> nodes_;  // depth first; empty when the mesh has no faces

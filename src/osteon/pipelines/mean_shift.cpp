@@ -39,31 +39,37 @@ std::vector<float> doubled(std::span<const float> weights, Mirror mirror) {
   return all;
 }
 
-// Calls visit(i, sums at point i) for every point that is not an image; each point in exactly one task.
-template <class Visit>
-void for_each_sum(std::span<const Vec3f> points, std::span<const float> weights, Mirror mirror, float bandwidth, const Visit& visit) {
+// Calls visit(i, sums at point i) for every point that is not an image and is asked for; each point in exactly one task.
+template <class IsAsked, class Visit>
+void for_each_sum(std::span<const Vec3f> points, std::span<const float> weights, Mirror mirror, float bandwidth, const IsAsked& is_asked,
+                  const Visit& visit) {
   const PointGrid grid(with_images(points, mirror), doubled(weights, mirror), bandwidth);
   parallel_for(grid.cells(), kCellsPerTask, [&](std::size_t first, std::size_t last) {
     for (std::size_t cell = first; cell < last; ++cell) {
       const auto columns = grid.around(cell);
       const auto [begin, end] = grid.points_of(cell);
       for (std::uint32_t place = begin; place < end; ++place)
-        if (const std::uint32_t i = grid.original(place); i < points.size())
+        if (const std::uint32_t i = grid.original(place); i < points.size() && is_asked(i))
           visit(i, sums_at(grid.position(place), grid, columns, bandwidth * bandwidth));
     }
   });
 }
 
-// Moves every point once; returns the longest move.
-float shift(std::vector<Vec3f>& points, std::span<const float> weights, Mirror mirror, const MeanShiftOptions& options) {
+// Moves every point once that does not rest; returns the longest move.
+float shift(std::vector<Vec3f>& points, std::vector<std::uint8_t>& rests, std::span<const float> weights, Mirror mirror,
+            const MeanShiftOptions& options) {
   std::vector<Vec3f> moves(points.size(), Vec3f::Zero());
-  for_each_sum(points, weights, mirror, options.bandwidth, [&](std::size_t i, const KernelSums& s) {
-    if (s.k > 0.0f) moves[i] = options.step * Vec3f(s.x, s.y, s.z) / s.k;
-  });
+  for_each_sum(
+      points, weights, mirror, options.bandwidth, [&](std::size_t i) { return !rests[i]; },
+      [&](std::size_t i, const KernelSums& s) {
+        if (s.k > 0.0f) moves[i] = options.step * Vec3f(s.x, s.y, s.z) / s.k;
+      });
   float longest = 0.0f;
   for (std::size_t i = 0; i < points.size(); ++i) {
     points[i] += moves[i];
-    longest = std::max(longest, moves[i].norm());
+    const float move = moves[i].norm();
+    longest = std::max(longest, move);
+    if (move < options.rest) rests[i] = 1;
   }
   return longest;
 }
@@ -74,8 +80,9 @@ MeanShiftResult mean_shift(std::span<const Vec3f> points, std::span<const float>
   assert(points.size() == weights.size() && options.bandwidth > 0.0f);
   MeanShiftResult result;
   result.points.assign(points.begin(), points.end());
+  std::vector<std::uint8_t> rests(points.size(), 0);
   while (!result.converged && result.iterations < options.most_iterations) {
-    result.converged = shift(result.points, weights, mirror, options) <= options.tolerance;
+    result.converged = shift(result.points, rests, weights, mirror, options) <= options.tolerance;
     ++result.iterations;
   }
   return result;
@@ -84,7 +91,9 @@ MeanShiftResult mean_shift(std::span<const Vec3f> points, std::span<const float>
 std::vector<float> kernel_density(std::span<const Vec3f> points, std::span<const float> weights, Mirror mirror, float bandwidth) {
   std::vector<float> density(points.size(), 0.0f);
   const float scale = 1.0f / (bandwidth * bandwidth);
-  for_each_sum(points, weights, mirror, bandwidth, [&](std::size_t i, const KernelSums& s) { density[i] = scale * s.k; });
+  for_each_sum(
+      points, weights, mirror, bandwidth, [](std::size_t) { return true; },
+      [&](std::size_t i, const KernelSums& s) { density[i] = scale * s.k; });
   return density;
 }
 

@@ -16,6 +16,7 @@ struct MeanShiftOptions {
   float bandwidth = 0.0429f;  // h, in the unit of the points
   float step = 0.3f;          // share of the way to the local mean that a point goes in one iteration
   float tolerance = 1e-3f;    // stop when no point moves farther in one iteration
+  float rest = 0.0f;          // a point that goes less far in one iteration stays there, while others still move; 0: none does
   int most_iterations = 100;
 };
 

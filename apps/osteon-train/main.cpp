@@ -3,25 +3,13 @@
 #include <cstdio>
 #include <exception>
 
+#include "../kept_memory.h"
 #include "curves_command.h"
 #include "finetune_command.h"
 #include "osteon/base/progress.h"
 #include "rignet_command.h"
 
-#if __has_include(<malloc.h>)
-#include <malloc.h>
-#endif
-
 namespace {
-
-// The tensors of a step are as large as those of the last one: memory that is given back is asked for again, and every page of it then
-// costs a fault. The C library gives back blocks of some megabytes at once; here it keeps them.
-void keep_freed_memory() {
-#ifdef M_MMAP_THRESHOLD
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that is allowed
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-#endif
-}
 
 enum ExitCode { done = 0, failed = 1, bad_input = 2, cancelled = 130 };
 
@@ -43,7 +31,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();
+  osteon::app::keep_freed_memory();
   try {
     return run(argc, argv);
   } catch (const osteon::Error& e) {

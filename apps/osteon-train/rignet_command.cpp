@@ -250,12 +250,14 @@ void run(const CLI::App& command, Task task, Arguments a) {
 void add_command(CLI::App& app, Task task, const char* name, const char* description) {
   auto* command = app.add_subcommand(name, description);
   auto arguments = std::make_shared<Arguments>();
+  if (task == Task::neuroskinning_2019) {
+    arguments->options.augment.mirror = arguments->options.augment.half_turn = 0.0f;  // slots have sides
+    arguments->options.task.run.norm = {.momentum = 0.05};  // renormalised to running figures it learns to rely on their lag
+  }
   add_common_options(*command, *arguments);
   if (task == Task::joints) add_combined_options(*command, *arguments);
   if (task == Task::votes) add_votes_options(*command, *arguments);
   if (reads_super_skeleton(task)) add_neuroskinning_options(*command, *arguments);
-  if (task == Task::neuroskinning_2019)
-    arguments->options.augment.mirror = arguments->options.augment.half_turn = 0.0f;  // slots have sides
   command->callback([command, task, arguments] { run(*command, task, *arguments); });
 }
 

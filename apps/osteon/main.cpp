@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 
+#include "../kept_memory.h"
 #include "commands.h"
 #include "osteon/base/parallel.h"
 #include "osteon/base/progress.h"
@@ -59,6 +60,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  osteon::app::keep_freed_memory();
   send_messages_to_stderr();
   try {
     return run(argc, argv);

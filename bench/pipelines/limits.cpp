@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <map>
 
+#include "apps/kept_memory.h"
 #include "infer/flop_counter.h"
 #include "infer/product_rate.h"
 #include "osteon/base/error.h"
@@ -55,7 +56,7 @@ double gigabytes(std::size_t items, std::size_t size) { return 1e-9 * static_cas
 double bytes_of(const TriangleMesh& mesh) { return gigabytes(mesh.positions.size(), 12) + gigabytes(mesh.faces.size(), 12); }
 double bytes_of(const geometry::Neighbourhoods& n) { return gigabytes(n.offsets.size() + n.members.size(), 4); }
 
-// Of the joints' stage: 19 operations for each pair of points within the bandwidth, in every round of the mean shift.
+// Of the joints' stage: 19 operations for each point that moves and point within the bandwidth, in every round of the mean shift.
 double gflop_of_mean_shift(const pipelines::JointCandidates& seen, const geometry::VoxelGrid& voxels, const Plane& plane, float bandwidth) {
   std::vector<Vec3f> points;
   std::vector<float> weights;
@@ -67,7 +68,8 @@ double gflop_of_mean_shift(const pipelines::JointCandidates& seen, const geometr
     weights.push_back(seen.attention[i]);
   }
   double pairs = 0.0;
-  pipelines::MeanShiftOptions once{.bandwidth = bandwidth, .most_iterations = 1};
+  const pipelines::MeanShiftOptions once{.bandwidth = bandwidth, .most_iterations = 1};
+  std::vector<bool> rests(points.size(), false);
   for (bool done = false; !done;) {
     std::vector<double> near(points.size(), 0.0);
     parallel_for(points.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -76,10 +78,16 @@ double gflop_of_mean_shift(const pipelines::JointCandidates& seen, const geometr
           for (const float side : {1.0f, -1.0f})
             near[i] += (Vec3f(side * p.x(), p.y(), p.z()) - points[i]).squaredNorm() < bandwidth * bandwidth ? 1.0 : 0.0;
     });
-    for (const double n : near) pairs += n;
-    auto moved = pipelines::mean_shift(points, weights, pipelines::Mirror::across_x, once);
-    done = moved.converged;
-    points = std::move(moved.points);
+    const auto moved = pipelines::mean_shift(points, weights, pipelines::Mirror::across_x, once);
+    done = true;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (rests[i]) continue;
+      pairs += near[i];
+      const float move = (moved.points[i] - points[i]).norm();
+      done = done && move <= once.tolerance;
+      rests[i] = move < pipelines::JointExtractionOptions().rest;
+      points[i] = moved.points[i];
+    }
   }
   return 19e-9 * pairs;
 }
@@ -180,6 +188,7 @@ void run(const std::filesystem::path& folder, int runs) {
 }  // namespace osteon
 
 int main(int argc, char** argv) {
+  osteon::app::keep_freed_memory();  // as the program does
   if (argc < 2 || argc > 3) {
     fmt::print(stderr, "usage: limits MODELS [RUNS]\n");
     return 2;

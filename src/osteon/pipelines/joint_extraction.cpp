@@ -11,8 +11,6 @@
 namespace osteon::pipelines {
 namespace {
 
-constexpr float kRest = 4e-5f;  // of the mean shift, whose tolerance is 1e-3
-
 // What takes part in the mean shift, in the mirror frame.
 struct Votes {
   std::vector<Vec3f> positions;
@@ -167,7 +165,7 @@ void add_spread_joints(JointSet& joints, const Votes& rest, double all, const ge
   const JointSet before = joints;
   options.bandwidth *= 2.0f;
   const float h = options.bandwidth;
-  const auto shifted = mean_shift(rest.positions, rest.weights, mirror, {.bandwidth = h, .step = options.step, .rest = kRest}).points;
+  const auto shifted = mean_shift(rest.positions, rest.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
   std::vector<float> shares = kernel_density(shifted, rest.weights, mirror, h);
   for (float& share : shares) share = static_cast<float>(static_cast<double>(share) / all);
   for (const Mode& mode : modes_of(shifted, shares, mirror, h)) {
@@ -184,7 +182,7 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   out.bandwidth = options.bandwidth;
   out.inside_used = votes.inside_used;
   const float h = options.bandwidth;
-  const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step, .rest = kRest}).points;
+  const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
   prune(modes, options.min_share * share_scale(h) * std::sqrt(20.0f / options.expected_joints));
   for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);

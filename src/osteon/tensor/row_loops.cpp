@@ -78,13 +78,22 @@ OSTEON_EVERY_CPU void add_gathered(float* x, std::size_t width, const float* add
 }
 
 OSTEON_EVERY_CPU void mean_of_rows(const float* x, std::size_t width, std::span<const std::int32_t> picked, float* __restrict out) {
-  for (std::size_t c = 0; c < width; ++c) out[c] = 0.0f;
-  for (const std::int32_t row : picked) {
-    const float* __restrict from = x + static_cast<std::size_t>(row) * width;
-    for (std::size_t c = 0; c < width; ++c) out[c] += from[c];
-  }
+  constexpr std::size_t lanes = 64;  // sums that stay in registers
   const float share = 1.0f / static_cast<float>(picked.size());
-  for (std::size_t c = 0; c < width; ++c) out[c] *= share;
+  std::size_t first = 0;
+  for (; first + lanes <= width; first += lanes) {
+    float sums[lanes] = {};
+    for (const std::int32_t row : picked) {
+      const float* __restrict from = x + static_cast<std::size_t>(row) * width + first;
+      for (std::size_t i = 0; i < lanes; ++i) sums[i] += from[i];
+    }
+    for (std::size_t i = 0; i < lanes; ++i) out[first + i] = share * sums[i];
+  }
+  for (std::size_t c = first; c < width; ++c) {
+    float sum = 0.0f;
+    for (const std::int32_t row : picked) sum += x[static_cast<std::size_t>(row) * width + c];
+    out[c] = share * sum;
+  }
 }
 
 OSTEON_EVERY_CPU void head_products(const float* __restrict query, const float* x, std::size_t width, std::span<const std::int32_t> picked,

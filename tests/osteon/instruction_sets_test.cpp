@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Older processors: the same rig but for rounding. oneDNN takes the newest instructions that it finds; here it is told to look no further.
-// (Our own loops choose by themselves and cannot be told; they give the same bits on all, see pipelines/kernel_sums.h.)
+// (Our own loops, base/every_cpu.h, choose by themselves and cannot be told.)
 #include <cstdlib>
 
 #include "osteon/io/load.h"

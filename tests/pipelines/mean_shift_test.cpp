@@ -133,6 +133,21 @@ TEST(KernelDensity, counts_the_weight_at_one_place_and_its_image) {
   EXPECT_NEAR(both[3], 16.0f, 1e-5f);  // on the plane: the image is at the same place
 }
 
+TEST(MeanShift, points_that_rest_end_where_they_would_have_ended) {
+  std::vector<Vec3f> points;
+  std::vector<float> weights;
+  for (int i = 0; i < 200; ++i) {  // two clusters of different size, so that one is at rest long before the other
+    const float t = 0.1f * static_cast<float>(i);
+    points.push_back((i % 2 ? 0.02f : 0.002f) * Vec3f(std::sin(t), std::cos(2.0f * t), std::sin(3.0f * t)) +
+                     Vec3f(i % 2 ? 0.3f : 0.0f, 0, 0));
+    weights.push_back(1.0f);
+  }
+  const auto all_move = mean_shift(points, weights, Mirror::off, {.bandwidth = 0.03f});
+  const auto some_rest = mean_shift(points, weights, Mirror::off, {.bandwidth = 0.03f, .rest = 4e-5f});
+  EXPECT_NE(some_rest.points, all_move.points);
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_VEC3_NEAR(some_rest.points[i], all_move.points[i], 1e-3f);
+}
+
 TEST(MeanShift, no_points_is_no_work) { EXPECT_TRUE(mean_shift({}, {}, Mirror::across_x, {}).points.empty()); }
 
 }  // namespace

@@ -67,7 +67,7 @@ class Bvh {
   struct Ray;
   struct Builder;
 
-  std::vector<Node> nodes_;  // depth first; empty when the mesh has no faces
+  std::vector<Node> nodes_;  // breadth first; empty when the mesh has no faces
   std::vector<TriangleBlock> blocks_;
 };
 

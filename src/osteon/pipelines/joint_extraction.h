@@ -26,7 +26,7 @@ struct JointCandidates {
 struct JointExtractionOptions {
   float bandwidth = kDefaultBandwidth;
   float step = 0.3f;              // of the mean shift
-  float rest = 4e-5f;             // of the mean shift; its tolerance is 1e-3
+  float rest = 4e-5f;             // of the mean shift: ten more rounds would not take a vote as far as its tolerance
   float min_attention = 1e-3f;    // candidates below are ignored
   float expected_joints = 20.0f;  // about how many there are: where there are few, each gathers more
   float min_share =

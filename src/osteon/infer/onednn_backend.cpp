@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "osteon/tensor/graph_attention.h"
 #include "osteon/tensor/loops.h"
+#include "osteon/tensor/parallel_loops.h"
 #include "osteon/tensor/row_loops.h"
 
 namespace osteon::infer {
@@ -67,6 +67,8 @@ Onednn::Tensor made(tensor::Tensor numbers, std::shared_ptr<const Affine> after 
   return {std::make_shared<Onednn::Value>(Onednn::Value{rows, columns, std::move(after), std::move(numbers), {}})};
 }
 
+constexpr std::size_t kLongSegment = 64;
+
 Affine identity(std::size_t columns) { return {std::vector<float>(columns, 1.0f), std::vector<float>(columns, 0.0f)}; }
 
 Affine affine_of(const std::shared_ptr<const Affine>& norm, std::size_t columns) { return norm ? *norm : identity(columns); }
@@ -105,7 +107,7 @@ const tensor::Tensor& Onednn::Value::stored() {
   return *numbers;
 }
 
-tensor::Tensor Onednn::Value::applied() { return after ? loops::scale_shift(stored(), after->scale, after->shift) : stored(); }
+tensor::Tensor Onednn::Value::applied() { return after ? tensor::scale_shift(stored(), after->scale, after->shift) : stored(); }
 
 Onednn::Onednn(Parameters parameters, tensor::Precision precision) : parameters_(std::move(parameters)), precision_(precision) {}
 Onednn::~Onednn() = default;
@@ -201,7 +203,7 @@ Onednn::Tensor Onednn::batch_norm(const Path& path, const Tensor& x) {
   return made(x.value->applied(), norm(path));
 }
 
-Onednn::Tensor Onednn::relu(const Tensor& x) { return made(loops::relu(x.value->applied())); }
+Onednn::Tensor Onednn::relu(const Tensor& x) { return made(tensor::relu(x.value->applied())); }
 
 Onednn::Tensor Onednn::subtract(const Tensor& x, const Tensor& y) { return made(loops::subtract(x.value->applied(), y.value->applied())); }
 
@@ -212,14 +214,17 @@ Onednn::Tensor Onednn::concat(std::initializer_list<Tensor> parts) {
 }
 
 Onednn::Tensor Onednn::rows(const Tensor& x, const Index& picked) {
-  return made(loops::rows(x.value->stored(), *picked.numbers), x.value->after);
+  return made(tensor::rows(x.value->stored(), *picked.numbers), x.value->after);
 }
 
 Onednn::Tensor Onednn::max_by(const Tensor& x, const Index& offsets) {
   Value& value = *x.value;
-  if (value.numbers) return made(loops::max_by(value.applied(), *offsets.numbers));
   const Affine after = affine_of(value.after, value.columns);
-  return made(value.deferred->mlp->max_by(stored_columns(value.deferred->input), *offsets.numbers, after.scale, after.shift));
+  const auto& segments = *offsets.numbers;
+  // A chain without storage computes every segment by itself: many short ones would each be a product that is hardly filled.
+  const bool short_segments = value.rows < kLongSegment * (segments.size() - 1);
+  if (value.numbers || short_segments) return made(tensor::max_by(value.stored(), segments, after.scale, after.shift));
+  return made(value.deferred->mlp->max_by(stored_columns(value.deferred->input), segments, after.scale, after.shift));
 }
 
 // A mean of normalised rows is the normalised mean.

@@ -94,7 +94,7 @@ float* thread_scratch(int slot, std::size_t count) {
     std::shared_ptr<float[]> floats;
     std::size_t size = 0;
   };
-  thread_local std::array<Slot, 9> slots;
+  thread_local std::array<Slot, 10> slots;
   Slot& s = slots.at(static_cast<std::size_t>(slot));
   if (s.size < count) s = {aligned_floats(count), count};
   return s.floats.get();

@@ -11,7 +11,7 @@
 namespace osteon::tensor {
 namespace {
 
-constexpr int input_slot = 3, even_slot = 4, odd_slot = 5;  // thread_scratch; PackedLinear has 0..2
+constexpr int input_slot = 3, even_slot = 4, odd_slot = 5;  // thread_scratch; PackedLinear has 0..2 and 8
 
 using Block = PackedMlp::Block;
 
@@ -93,7 +93,9 @@ PackedMlp::Prepared PackedMlp::prepare(std::span<const InputColumns> input) cons
     }
     const PackedLinear& multiply = apart_[out.addends.size()];
     Tensor product(input[i].values.rows(), multiply.outputs());
-    multiply(input[i].values.data(), product.rows(), product.data());
+    parallel_for(product.rows(), multiply.tile_rows(), [&](std::size_t begin, std::size_t end) {
+      multiply(input[i].values.row(begin).data(), end - begin, product.row(begin).data());
+    });
     out.addends.push_back({product, *input[i].picked});
   }
   return out;
@@ -165,8 +167,7 @@ Tensor PackedMlp::max_by(std::span<const InputColumns> input, std::span<const st
     const std::size_t rows = piece.end - piece.begin;
     float* const y = thread_scratch(later_.size() % 2 == 0 ? even_slot : odd_slot, rows * width);
     run_rows(prepared, piece.begin, piece.end, y);
-    scale_shift(y, rows, width, scale.data(), shift.data());
-    max_of_rows(y, rows, width, of_pieces.row(k).data());
+    max_of_rows(y, rows, width, scale.data(), shift.data(), of_pieces.row(k).data());
   });
 
   Tensor out(offsets.size() - 1, width);

@@ -30,12 +30,20 @@ OSTEON_EVERY_CPU void max_into(const float* messages, std::span<const std::int32
   }
 }
 
-OSTEON_EVERY_CPU void max_of_rows(const float* x, std::size_t rows, std::size_t width, float* __restrict best) {
-  for (std::size_t c = 0; c < width; ++c) best[c] = x[c];
+OSTEON_EVERY_CPU void max_of_rows(const float* x, std::size_t rows, std::size_t width, const float* __restrict scale,
+                                  const float* __restrict shift, float* __restrict best) {
+  for (std::size_t c = 0; c < width; ++c) best[c] = scale[c] * x[c] + shift[c];
   for (std::size_t r = 1; r < rows; ++r) {
     const float* __restrict row = x + r * width;
-    for (std::size_t c = 0; c < width; ++c) best[c] = row[c] > best[c] ? row[c] : best[c];
+    for (std::size_t c = 0; c < width; ++c) {
+      const float value = scale[c] * row[c] + shift[c];
+      best[c] = value > best[c] ? value : best[c];
+    }
   }
+}
+
+OSTEON_EVERY_CPU void relu_of_row(const float* __restrict x, std::size_t width, float* __restrict out) {
+  for (std::size_t c = 0; c < width; ++c) out[c] = x[c] > 0 ? x[c] : 0;
 }
 
 OSTEON_EVERY_CPU void sign_shift_relu(float* x, std::size_t rows, std::size_t width, const float* __restrict sign,
@@ -46,14 +54,6 @@ OSTEON_EVERY_CPU void sign_shift_relu(float* x, std::size_t rows, std::size_t wi
       const float value = sign[c] * row[c] + shift[c];
       row[c] = value > 0 ? value : 0;
     }
-  }
-}
-
-OSTEON_EVERY_CPU void scale_shift(float* x, std::size_t rows, std::size_t width, const float* __restrict scale,
-                                  const float* __restrict shift) {
-  for (std::size_t r = 0; r < rows; ++r) {
-    float* __restrict row = x + r * width;
-    for (std::size_t c = 0; c < width; ++c) row[c] = scale[c] * row[c] + shift[c];
   }
 }
 

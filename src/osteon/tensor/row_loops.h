@@ -15,14 +15,14 @@ void gather_add_relu(const float* at_receiver, const float* at_source, std::size
 // best[receivers[m] - first] = max(itself, messages[m]), for dense rows of `width` floats. Pre: every receiver >= first.
 void max_into(const float* messages, std::span<const std::int32_t> receivers, std::int32_t first, std::size_t width, float* best);
 
-// best = the largest of each column of dense rows. Pre: rows > 0.
-void max_of_rows(const float* x, std::size_t rows, std::size_t width, float* best);
+// best = the largest of each column of scale * x + shift, for dense rows. Pre: rows > 0.
+void max_of_rows(const float* x, std::size_t rows, std::size_t width, const float* scale, const float* shift, float* best);
+
+// out = max(0, x)
+void relu_of_row(const float* x, std::size_t width, float* out);
 
 // x = max(0, sign * x + shift), column by column, for dense rows.
 void sign_shift_relu(float* x, std::size_t rows, std::size_t width, const float* sign, const float* shift);
-
-// x = scale * x + shift, column by column, for dense rows.
-void scale_shift(float* x, std::size_t rows, std::size_t width, const float* scale, const float* shift);
 
 // to = from rounded to bf16, the upper halves of floats (to nearest, ties to even). Pre: finite.
 void to_bf16(const float* from, std::size_t count, std::uint16_t* to);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "osteon/tensor/graph_attention.h"
+#include "osteon/tensor/parallel_loops.h"
 
 #include <cmath>
 
@@ -58,7 +58,7 @@ TEST(GraphAttention, scores_of_any_size_give_numbers) {
   EXPECT_TRUE(test::same_bits(attend(Tensor(numbers), offsets, sources, 1).matrix(), numbers));
 }
 
-TEST(GraphAttention, equals_the_plain_loops_and_the_same_bits_for_any_number_of_threads) {
+TEST(ParallelLoops, of_attention_equal_the_plain_loops_and_the_same_bits_for_any_number_of_threads) {
   Random random(2);
   const Graph g = any_graph(300, 9, random);
   const Tensor x = any_tensor(300, 96, random);
@@ -72,6 +72,29 @@ TEST(GraphAttention, equals_the_plain_loops_and_the_same_bits_for_any_number_of_
   for (const int n : {2, 4}) {
     EXPECT_TRUE(test::same_bits(both(n).first, heard));
     EXPECT_TRUE(test::same_bits(both(n).second, mean));
+  }
+}
+
+// Segments of any length from one row to many; scales of either sign, so that the largest is not always that of the largest number.
+TEST(ParallelLoops, equal_the_plain_loops_for_any_number_of_threads) {
+  Random random(3);
+  const Tensor x = any_tensor(700, 37, random);
+  const Graph g = any_graph(700, 9, random);
+  std::vector<std::int32_t> offsets{0};
+  while (offsets.back() < 700) offsets.push_back(std::min(700, offsets.back() + 1 + static_cast<std::int32_t>(random.below(90))));
+  std::vector<float> scale, shift;
+  for (int c = 0; c < 37; ++c) {
+    scale.push_back(random.normal());
+    shift.push_back(random.normal());
+  }
+  for (const int n : {1, 2, 4}) {
+    const test::ScopedThreads scope(n);
+    EXPECT_TRUE(test::same_bits(relu(x).matrix(), loops::relu(x).matrix()));
+    EXPECT_TRUE(test::same_bits(rows(x, g.sources).matrix(), loops::rows(x, g.sources).matrix()));
+    EXPECT_LE(test::relative_difference(scale_shift(x, scale, shift).matrix(), loops::scale_shift(x, scale, shift).matrix()), 1e-6f);
+    EXPECT_LE(test::relative_difference(max_by(x, offsets, scale, shift).matrix(),
+                                        loops::max_by(loops::scale_shift(x, scale, shift), offsets).matrix()),
+              1e-6f);
   }
 }
 

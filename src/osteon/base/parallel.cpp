@@ -63,16 +63,36 @@ class Pool {
     }
     wake_.notify_all();
     loop.run();
+    {
+      const std::lock_guard lock(mutex_);
+      loop_ = nullptr;  // a helper that wakes late finds nothing to do
+    }
+    const auto is_done = [this] { return busy_ == 0; };
+    if (soon(is_done)) return;
     std::unique_lock lock(mutex_);
-    loop_ = nullptr;  // a helper that wakes late finds nothing to do
-    done_.wait(lock, [this] { return busy_ == 0; });
+    done_.wait(lock, is_done);
   }
 
  private:
+  // Whether it holds within some ten microseconds. A thread that sleeps takes longer than that to wake, and one loop often follows another.
+  template <class Condition>
+  static bool soon(const Condition& holds) {
+    for (int i = 0; i < kLooks; ++i) {
+      if (holds()) return true;
+      std::this_thread::yield();
+    }
+    return false;
+  }
+
   void serve() {
     std::size_t seen = 0;
-    std::unique_lock lock(mutex_);
     while (true) {
+      soon([&] { return generation_ != seen; });
+      std::unique_lock lock(mutex_);
+      if (generation_ != seen && !loop_ && !stop_) {  // come and gone
+        seen = generation_;
+        continue;
+      }
       wake_.wait(lock, [&] { return stop_ || (loop_ && generation_ != seen); });
       if (stop_) return;
       seen = generation_;
@@ -85,12 +105,13 @@ class Pool {
     }
   }
 
+  static constexpr int kLooks = 100;
   std::vector<std::thread> threads_;
   std::mutex run_mutex_, mutex_;
   std::condition_variable wake_, done_;
   Loop* loop_ = nullptr;
-  std::size_t generation_ = 0;
-  int busy_ = 0;
+  std::atomic<std::size_t> generation_{0};
+  std::atomic<int> busy_{0};
   bool stop_ = false;
 };
 

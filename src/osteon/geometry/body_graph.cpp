@@ -40,14 +40,21 @@ void add_chords_from(VertexId v, const TriangleMesh& mesh, const BodyLines& line
         links.push_back({number(v), number(corner), (mesh.positions[v] - mesh.positions[corner]).norm()});
 }
 
-std::vector<Link> chords(const TriangleMesh& mesh, const BodyLines& lines) {
+// The surface and the chords through the body: the surface by one thread, while the others cast rays.
+SurfaceGraph surface_and_chords(const TriangleMesh& mesh, const BodyLines& lines, float bridge) {
+  SurfaceGraph surface;
   std::vector<std::vector<Link>> found((mesh.positions.size() + kGrain - 1) / kGrain);
-  parallel_for(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) add_chords_from(static_cast<VertexId>(v), mesh, lines, found[begin / kGrain]);
+  parallel_for(found.size() + 1, 1, [&](std::size_t task, std::size_t) {
+    if (task == 0) {
+      surface = surface_graph(mesh, bridge);
+      return;
+    }
+    const std::size_t begin = (task - 1) * kGrain, end = std::min(begin + kGrain, mesh.positions.size());
+    for (std::size_t v = begin; v < end; ++v) add_chords_from(static_cast<VertexId>(v), mesh, lines, found[task - 1]);
   });
-  std::vector<Link> links;
-  for (const auto& some : found) links.insert(links.end(), some.begin(), some.end());
-  return links;
+  std::vector<Link> chords;
+  for (const auto& some : found) chords.insert(chords.end(), some.begin(), some.end());
+  return with_links(surface, chords);
 }
 
 UnionFind pieces_of(const SurfaceGraph& graph) {
@@ -94,8 +101,9 @@ std::vector<Link> links_between_pieces(const TriangleMesh& mesh, const SurfaceGr
 }  // namespace
 
 SurfaceGraph body_graph(const TriangleMesh& mesh, const BodyLines& lines, float bridge) {
-  const SurfaceGraph body = with_links(surface_graph(mesh, bridge), chords(mesh, lines));
-  return with_links(body, links_between_pieces(mesh, body));
+  SurfaceGraph body = surface_and_chords(mesh, lines, bridge);
+  const std::vector<Link> links = links_between_pieces(mesh, body);
+  return links.empty() ? body : with_links(body, links);
 }
 
 }  // namespace osteon::geometry

@@ -15,6 +15,7 @@
 namespace osteon::geometry {
 namespace {
 
+constexpr std::size_t kVerticesPerTask = 256;
 constexpr float kLeastCosine = -0.5f;  // normals that differ by more disagree
 
 std::uint32_t number(VertexId v) { return static_cast<std::uint32_t>(v); }
@@ -180,12 +181,19 @@ SurfaceGraph with_links(const SurfaceGraph& graph, std::span<const Link> links) 
     edges[next[l.from]++] = {l.to, l.length};
     edges[next[l.to]++] = {l.from, l.length};
   }
+  std::vector<std::uint32_t> kept(graph.size());
+  parallel_for(graph.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto row = std::span(edges).subspan(ends[v], ends[v + 1] - ends[v]);
+      std::ranges::sort(row, {}, [](const SurfaceGraph::Edge& e) { return std::pair(e.to, e.length); });
+      kept[v] = static_cast<std::uint32_t>(std::ranges::unique(row, {}, &SurfaceGraph::Edge::to).begin() - row.begin());
+    }
+  });
   SurfaceGraph out;
+  out.edges.reserve(edges.size());
   for (std::size_t v = 0; v < graph.size(); ++v) {
-    const auto row = std::span(edges).subspan(ends[v], ends[v + 1] - ends[v]);
-    std::ranges::sort(row, {}, [](const SurfaceGraph::Edge& e) { return std::pair(e.to, e.length); });
-    const auto longer = std::ranges::unique(row, {}, &SurfaceGraph::Edge::to);
-    out.edges.insert(out.edges.end(), row.begin(), longer.begin());
+    const auto row = std::span(edges).subspan(ends[v], kept[v]);
+    out.edges.insert(out.edges.end(), row.begin(), row.end());
     out.offsets.push_back(static_cast<std::uint32_t>(out.edges.size()));
   }
   return out;

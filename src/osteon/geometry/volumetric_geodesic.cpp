@@ -56,22 +56,29 @@ struct Label {
   std::int32_t vertex, bone, rank;
 };
 
-// The labels, nearest first. Those far ahead wait unsorted in buckets, so that the heap stays small. Pre: what is pushed is no nearer than
-// what was popped last.
+// The labels, nearest first. They wait unsorted in buckets of like distances; a bucket is sorted when its turn comes, and what is pushed
+// into it from then on goes through a heap, which stays small. Pre: what is pushed is no nearer than what was popped last.
 class LabelQueue {
  public:
   void push(const Label& label) {
     const auto bucket = static_cast<std::size_t>(std::min(label.distance / kWidth, kLastBucket));
-    if (bucket <= current_) return heap_.push(label);
-    if (bucket >= later_.size()) later_.resize(bucket + 1);
-    later_[bucket].push_back(label);
+    if (bucket <= current_) return late_.push(label);
+    if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
+    buckets_[bucket].push_back(label);
   }
   std::optional<Label> pop() {
-    while (heap_.empty() && ++current_ < later_.size())
-      for (const Label& label : std::exchange(later_[current_], {})) heap_.push(label);
-    if (heap_.empty()) return std::nullopt;
-    const Label label = heap_.top();
-    heap_.pop();
+    while (late_.empty() && sorted_.empty() && current_ + 1 < buckets_.size()) {
+      sorted_ = std::exchange(buckets_[++current_], {});
+      std::ranges::sort(sorted_, Later{});
+    }
+    if (late_.empty() && sorted_.empty()) return std::nullopt;
+    if (late_.empty() || (!sorted_.empty() && !Later{}(sorted_.back(), late_.top()))) {
+      const Label label = sorted_.back();
+      sorted_.pop_back();
+      return label;
+    }
+    const Label label = late_.top();
+    late_.pop();
     return label;
   }
 
@@ -80,9 +87,10 @@ class LabelQueue {
   struct Later {
     bool operator()(const Label& a, const Label& b) const { return a.distance > b.distance; }
   };
-  std::priority_queue<Label, std::vector<Label>, Later> heap_;
-  std::vector<std::vector<Label>> later_;
+  std::vector<std::vector<Label>> buckets_;
   std::size_t current_ = 0;
+  std::vector<Label> sorted_;  // what is left of the current bucket, the nearest last
+  std::priority_queue<Label, std::vector<Label>, Later> late_;
 };
 
 // Ways from all bones at once, nearest first, so that a vertex can stop listening once it has heard of as many joints as are wanted: what
@@ -98,8 +106,9 @@ class Ways {
         straight_(mesh.positions.size(), bones.size()),
         order_(mesh.positions.size(), bones.size()),
         sight_(mesh.positions.size() * bones.size(), Sight::unknown),
-        distances_(Matrix::Constant(rows(), columns(), kInfinity)),
-        heard_(mesh.positions.size()) {
+        shortest_(Matrix::Constant(columns(), rows(), kInfinity)),
+        heard_(mesh.positions.size()),
+        reach_(mesh.positions.size(), kInfinity) {
     parallel_for(bones.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) samples_[b] = sampled(bones[b], lines);
     });
@@ -119,8 +128,7 @@ class Ways {
       for (const auto& [to, length] : body.of(static_cast<std::size_t>(label.vertex)))
         offer(static_cast<Eigen::Index>(to), label.bone, label.distance + length);
     }
-    for (Eigen::Index v = 0; v < rows(); ++v) forget_unsettled(v);
-    return std::move(distances_);
+    return settled();
   }
 
  private:
@@ -139,13 +147,15 @@ class Ways {
 
   // All straight distances; and along those that will hardly be spared, whether the bone is seen, while there are many threads.
   void look_around(Eigen::Index v) {
+    std::vector<std::pair<float, int>> by_distance;
     for (Eigen::Index b = 0; b < columns(); ++b) {
       const Segment& bone = bones_[static_cast<std::size_t>(b)];
       straight_(v, b) = (position(v) - point_at(bone, parameter_of_nearest(bone, position(v)))).norm();
-      order_(v, b) = static_cast<int>(b);
+      by_distance.emplace_back(straight_(v, b), static_cast<int>(b));
     }
-    std::ranges::sort(order_.row(v).begin(), order_.row(v).end(), {}, [&](int b) { return std::pair(straight_(v, b), b); });
-    for (Eigen::Index i = 0; i < std::min<Eigen::Index>(wanted_.count, columns()); ++i) sees(v, order_(v, i));
+    std::ranges::sort(by_distance);
+    for (Eigen::Index b = 0; b < columns(); ++b) order_(v, b) = by_distance[static_cast<std::size_t>(b)].second;
+    for (Eigen::Index i = 0; i < std::min<Eigen::Index>(wanted_.count + wanted_.count / 2, columns()); ++i) sees(v, order_(v, i));
   }
 
   bool sees(Eigen::Index v, Eigen::Index b) {
@@ -173,13 +183,13 @@ class Ways {
   }
 
   void offer(Eigen::Index v, Eigen::Index bone, float distance) {
-    if (distance >= distances_(v, bone) || distance > reach(v)) return;
-    distances_(v, bone) = distance;
+    if (distance >= shortest_(bone, v) || distance > reach(v)) return;
+    shortest_(bone, v) = distance;
     queue_.push({distance, number(v), number(bone), -1});
   }
 
   // How far the last of the wanted joints is, once all are known.
-  float reach(Eigen::Index v) const { return heard_[static_cast<std::size_t>(v)].reach; }
+  float reach(Eigen::Index v) const { return reach_[static_cast<std::size_t>(v)]; }
 
   // Of a joint that is no nearer by another bone, and not known by a shorter way. Equal distances all count: which comes first is chance.
   bool is_wanted(const Label& label) const {
@@ -190,22 +200,25 @@ class Ways {
   }
 
   void settle(const Label& label) {
-    auto& [bones, joints, reach] = heard_[static_cast<std::size_t>(label.vertex)];
+    const auto v = static_cast<std::size_t>(label.vertex);
+    auto& [bones, joints] = heard_[v];
     const bool is_new = std::ranges::none_of(bones, [&](const Heard& h) { return joint_of(h.bone) == joint_of(label.bone); });
+    if (bones.empty()) bones.reserve(static_cast<std::size_t>(wanted_.count) + 2);
     bones.push_back({label.bone, label.distance});
-    if (is_new && ++joints == wanted_.count) reach = label.distance;
-    distances_(label.vertex, label.bone) = label.distance;
+    if (is_new && ++joints == wanted_.count) reach_[v] = label.distance;
+    shortest_(label.bone, label.vertex) = label.distance;
   }
 
-  void forget_unsettled(Eigen::Index v) {
-    distances_.row(v).setConstant(kInfinity);
-    for (const Heard& h : heard_[static_cast<std::size_t>(v)].bones) distances_(v, h.bone) = h.distance;
+  Matrix settled() const {
+    Matrix distances = Matrix::Constant(rows(), columns(), kInfinity);
+    for (Eigen::Index v = 0; v < rows(); ++v)
+      for (const Heard& h : heard_[static_cast<std::size_t>(v)].bones) distances(v, h.bone) = h.distance;
+    return distances;
   }
 
   struct OfVertex {
     std::vector<Heard> bones;  // nearest first
     int joints = 0;            // that these start at
-    float reach = kInfinity;
   };
 
   const TriangleMesh& mesh_;
@@ -216,8 +229,9 @@ class Ways {
   Matrix straight_;           // (V,B)
   IndexMatrix order_;         // (V,B) bones by straight distance
   std::vector<Sight> sight_;  // (V,B)
-  Matrix distances_;          // (V,B) the shortest way so far
+  Matrix shortest_;           // (B,V) the shortest way so far: a vertex and its neighbours hear of one bone at a time
   std::vector<OfVertex> heard_;
+  std::vector<float> reach_;  // (V)
   LabelQueue queue_;
 };
 

@@ -172,16 +172,25 @@ void run(const std::filesystem::path& folder, int runs) {
   fmt::print("{} vertices, {} threads; products at {:.0f} GFLOP/s, copies at {:.1f} GB/s\n\n", mesh.positions.size(), threads(),
              median(product), median(copy));
   fmt::print("| stage | ms | of the time % | work | rate | of the limit % |\n|---|---|---|---|---|---|\n");
+  Work networks;
+  double in_networks = 0.0;
   for (const std::string& name : order) {
     const double time = median(seconds[name]);
     const Work& w = work.at(name);
     const bool computes = w.gflop > 0.0;
+    if (name.ends_with("network") || name.ends_with("networks")) {
+      networks.gflop += w.gflop;
+      in_networks += time;
+    }
     const double amount = computes ? w.gflop : w.gigabytes, rate = amount / time;
     fmt::print("| {} | {:.1f} | {:.0f} | {:.3g} {} | {:.3g} {}/s | {:.2g} |\n", name, 1e3 * time, 100.0 * time / whole,
                computes ? amount : 1e3 * amount, computes ? "GFLOP" : "MB", rate, computes ? "GFLOP" : "GB",
                100.0 * rate / median(computes ? product : copy));
   }
   fmt::print("| all | {:.1f} | 100 | | | |\n", 1e3 * whole);
+  fmt::print("| of these the networks | {:.1f} | {:.0f} | {:.3g} GFLOP | {:.3g} GFLOP/s | {:.2g} |\n", 1e3 * in_networks,
+             100.0 * in_networks / whole, networks.gflop, networks.gflop / in_networks,
+             100.0 * networks.gflop / in_networks / median(product));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "osteon/infer/model_folder.h"
 #include "osteon/infer/networks.h"
 #include "osteon/infer/onednn_backend.h"
+#include "osteon/infer/rignet.h"
 
 namespace osteon::infer {
 
@@ -16,6 +17,22 @@ struct NeuroskinningModel::Loaded {
   std::string super_skeleton;
   std::unique_ptr<Onednn> backend;
 };
+
+namespace {
+
+// Runs the network on a single vertex with a single joint, so that its weights are packed before the first mesh comes.
+void pack_weights(const NeuroskinningModel& model) {
+  const Vec3f origin = Vec3f::Zero();
+  const std::uint32_t no_neighbours[] = {0, 0};
+  nets::NeuroArrays neuro;
+  neuro.features.resize(nets::neuro_vertex_features + nets::neuro_slots);
+  neuro.choices = {std::vector<float>(nets::neuro_choice_features), {0, 1}, {0}, {0}, {0, 1}, {0}};
+  neuro.joints.resize(nets::neuro_joint_features + nets::neuro_kinds);
+  neuro.add_nearest(no_neighbours, {}, 0);
+  model(single_mesh({&origin, 1}, {no_neighbours, {}}, {no_neighbours, {}}), neuro);
+}
+
+}  // namespace
 
 NeuroskinningModel NeuroskinningModel::load() { return load(find_models("rignet")); }
 
@@ -30,8 +47,10 @@ NeuroskinningModel NeuroskinningModel::load(const fs::path& folder, tensor::Prec
   const auto super = content.metadata.find("super_skeleton");
   if (super == content.metadata.end()) throw Error("{}: has no super skeleton in its metadata", file_of(network).string());
   Parameters parameters(content, nets::rignet::parameter_shapes(network), file_of(network).string());
-  return NeuroskinningModel(
+  NeuroskinningModel model(
       std::make_unique<Loaded>(Loaded{network, super->second, std::make_unique<Onednn>(std::move(parameters), precision)}));
+  pack_weights(model);
+  return model;
 }
 
 NeuroskinningModel::NeuroskinningModel(std::unique_ptr<Loaded> loaded) : loaded_(std::move(loaded)) {}

@@ -110,7 +110,7 @@ nets::PairArrays pairs_in_both_orders(std::int32_t joints, const Matrix& feature
 
   Matrix both(2 * features.rows(), features.cols());
   Matrix reversed = features;
-  reversed.leftCols(3) = features.middleCols(nets::vote_to_middle, 3);
+  reversed.leftCols(3) = features.middleCols(3, 3);
   reversed.middleCols(3, 3) = features.leftCols(3);
   both << features, reversed;
   out.features.assign(both.data(), both.data() + both.size());
@@ -175,8 +175,12 @@ std::unique_ptr<RignetModels::Networks> RignetModels::load_networks(const fs::pa
                                                                     tensor::Precision precision) {
   const std::vector<Network> present = networks_in(folder);
   auto networks = std::make_unique<Networks>();
-  if (fs::exists(file_of(folder, Network::neuroskinning))) networks->neuroskinning = NeuroskinningModel::load(folder, precision);
-  parallel_for(present.size(), 1, [&](std::size_t i, std::size_t) {
+  const bool has_second = fs::exists(file_of(folder, Network::neuroskinning));
+  parallel_for(present.size() + (has_second ? 1 : 0), 1, [&](std::size_t i, std::size_t) {
+    if (i == present.size()) {
+      networks->neuroskinning = NeuroskinningModel::load(folder, precision);
+      return;
+    }
     auto runner = make_runner(present[i], file_of(folder, present[i]));
     pack_weights(*runner);
     networks->by_network[static_cast<std::size_t>(present[i])] = std::move(runner);

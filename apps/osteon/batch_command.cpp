@@ -66,6 +66,22 @@ std::vector<fs::path> characters_in(const BatchArguments& arguments) {
   return files;
 }
 
+std::string state_of(const fs::path& file) {
+  return fmt::format("{} bytes, changed {}", fs::file_size(file), fs::last_write_time(file).time_since_epoch().count());
+}
+
+// Of what a rig follows from beside the character and the options. What is missing is told when it is loaded.
+std::string state_of_models(const RigOptions& options) {
+  std::set<fs::path> files;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(options.models.weights(), missing))
+    if (entry.path().extension() == ".safetensors") files.insert(entry.path());
+  if (options.skeleton && fs::exists(*options.skeleton, missing)) files.insert(*options.skeleton);
+  std::string states;
+  for (const fs::path& file : files) states += fmt::format("; {} {}", file.filename().string(), state_of(file));
+  return states;
+}
+
 // hero.obj becomes hero.glb; where hero.fbx lies beside it, hero.obj.glb and hero.fbx.glb.
 std::vector<Job> jobs_of(const BatchArguments& arguments, const std::string& settings) {
   std::vector<Job> jobs;
@@ -79,8 +95,7 @@ std::vector<Job> jobs_of(const BatchArguments& arguments, const std::string& set
     const fs::path name = of_name[bare(file)] > 1 ? below(file) : bare(file);
     if (name.empty() || name.is_absolute() || *name.begin() == "..")
       throw Error("{}: expected a file below {}", file.string(), arguments.input.string());
-    const auto changed = fs::last_write_time(file).time_since_epoch().count();
-    jobs.push_back({file, name, fmt::format("{}; {} bytes, changed {}", settings, fs::file_size(file), changed), {}});
+    jobs.push_back({file, name, fmt::format("{}; {}", settings, state_of(file)), {}});
   }
   return jobs;
 }
@@ -230,7 +245,7 @@ void batch(BatchArguments arguments, const std::string& settings) {
   std::error_code missing;
   if (fs::equivalent(arguments.input, arguments.output, missing))
     throw Error("{}: the results would lie among the characters; choose another folder with -o", arguments.output.string());
-  std::vector<Job> jobs = jobs_of(arguments, settings);
+  std::vector<Job> jobs = jobs_of(arguments, settings + state_of_models(arguments.options));
   std::vector<Job*> open;
   for (Job& job : jobs)
     if (arguments.again || !is_done(arguments, job)) open.push_back(&job);
@@ -250,7 +265,7 @@ void batch(BatchArguments arguments, const std::string& settings) {
     throw Refused("{} of {} files were refused (see above, and --min-confidence)", refused, jobs.size());
 }
 
-// The command's options as they stand, without the folders: a file that was rigged with others is rigged again.
+// The command's options as they stand, without the folders: a file that was rigged with others is rigged again, also with other weights.
 std::string settings_of(const CLI::App& command) {
   std::string settings = "osteon " OSTEON_VERSION;
   for (const CLI::Option* option : command.get_options({}))

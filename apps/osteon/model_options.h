@@ -39,16 +39,14 @@ struct ModelOptions {
                        "Run the networks on LibTorch, on this device: cpu, cuda or cuda:N (default: oneDNN on the CPU)");
 #endif
   }
+  std::filesystem::path weights() const { return folder ? *folder : infer::find_models(name); }
   infer::RignetModels load() const {
-    const std::filesystem::path weights = folder ? *folder : infer::find_models(name);
 #ifdef OSTEON_TORCH
-    if (!device.empty()) return infer::RignetModels::load(weights, torch_infer::torch_runners(device));
+    if (!device.empty()) return infer::RignetModels::load(weights(), torch_infer::torch_runners(device));
 #endif
-    return infer::RignetModels::load(weights, precision);
+    return infer::RignetModels::load(weights(), precision);
   }
-  infer::NeuroskinningModel load_neuroskinning() const {
-    return infer::NeuroskinningModel::load(folder ? *folder : infer::find_models(name), precision);
-  }
+  infer::NeuroskinningModel load_neuroskinning() const { return infer::NeuroskinningModel::load(weights(), precision); }
 };
 
 }  // namespace osteon::app

@@ -70,6 +70,15 @@ TEST_F(BatchCommand, does_again_only_what_changed) {
   EXPECT_THAT(osteon(folder_, "batch in -o out --detail 0.3 --again").out, HasSubstr("0 of these before"));
 }
 
+TEST_F(BatchCommand, does_all_again_with_other_weights) {
+  const char* folder = std::getenv("OSTEON_MODELS");
+  fs::copy(folder ? fs::path(folder) / "rignet" : fs::path(OSTEON_MODELS_FOLDER "/rignet"), folder_ / "mine");
+  ASSERT_EQ(osteon(folder_, "batch in -o out --models mine").code, 0);
+  EXPECT_THAT(osteon(folder_, "batch in -o out --models mine").out, HasSubstr("4 of these before"));
+  fs::last_write_time(folder_ / "mine/votes.safetensors", fs::file_time_type::clock::now() + std::chrono::hours(1));
+  EXPECT_THAT(osteon(folder_, "batch in -o out --models mine").out, HasSubstr("0 of these before"));
+}
+
 // Killed at any moment, begun again: the same files as without, and nothing else.
 TEST_F(BatchCommand, goes_on_after_it_was_killed) {
   ASSERT_EQ(osteon(folder_, "batch in -o whole").code, 0);

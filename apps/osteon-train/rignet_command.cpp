@@ -125,6 +125,9 @@ void add_combined_options(CLI::App& command, Arguments& a) {
       ->check(CLI::PositiveNumber)
       ->needs(combined)
       ->capture_default_str();
+  command.add_option("--vertex-weight", a.options.task.vertex_weight, "Of the displaced vertices' loss where all is trained together")
+      ->needs(combined)
+      ->capture_default_str();
   command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")->capture_default_str();
   command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
 }

@@ -75,6 +75,20 @@ double mean(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
+// The combined loss is the vertex loss times its weight, and the rest.
+TEST(Trainer, the_combined_loss_counts_the_vertex_loss_as_often_as_it_is_told) {
+  const auto first_loss = [](double weight) {
+    TrainOptions options = options_for(1);
+    options.task.vertex_weight = weight;
+    Trainer trainer(Task::collapse, options, fresh_model(Task::collapse, 1));
+    return losses(Task::collapse, trainer).front();
+  };
+  const double without = first_loss(0.0), once = first_loss(1.0), twice = first_loss(2.0);
+  EXPECT_GT(without, 0.0);
+  EXPECT_GT(once, without);
+  EXPECT_NEAR(twice - once, once - without, 1e-5);
+}
+
 class Learning : public ::testing::TestWithParam<Task> {};
 
 TEST_P(Learning, thirty_steps_lower_the_loss) {

@@ -117,7 +117,7 @@ Tensor collapse_loss(Model& model, const dataset::Batch& batch, const TaskOption
   const Candidates all = candidates(Task::collapse, model, batch, options.run);
   const Tensor attention = all.attention.sigmoid();
   const std::size_t meshes = batch.targets.root.size();
-  Tensor loss = displacement_loss(all, batch);
+  Tensor loss = options.vertex_weight * displacement_loss(all, batch);
   for (std::size_t m = 0; m < meshes; ++m) {
     const auto trail = mean_shift(rows_of_mesh(all.points, batch.inputs.mesh.batch, m), rows_of_mesh(attention, batch.inputs.mesh.batch, m),
                                   model["bandwidth"].at("h"), options.mean_shift_steps);

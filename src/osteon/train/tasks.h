@@ -30,6 +30,7 @@ struct TaskOptions {
   RunOptions run;
   dataset::BatchOptions batch;
   int mean_shift_steps = 15;
+  double vertex_weight = 1.0;      // combined: of chamfer(q, joints), what the paper calls the vertex loss
   double collapse_weight = 2.0;    // of the trail against chamfer(q, joints): the released code's
   double attention_weight = 0.1;   // of the attention's own cross-entropy in the combined loss: the code's option
   double density_weight = 0.05;    // votes: of the density at the joints, against chamfer(q, joints)

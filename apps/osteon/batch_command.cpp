@@ -70,7 +70,8 @@ std::string state_of(const fs::path& file) {
   return fmt::format("{} bytes, changed {}", fs::file_size(file), fs::last_write_time(file).time_since_epoch().count());
 }
 
-// Of what a rig follows from beside the character and the options. What is missing is told when it is loaded.
+// Of what a rig follows from beside the character and the options: with other weights, or another skeleton, it is rigged again. What is
+// missing is told when it is loaded.
 std::string state_of_models(const RigOptions& options) {
   std::set<fs::path> files;
   std::error_code missing;
@@ -265,7 +266,7 @@ void batch(BatchArguments arguments, const std::string& settings) {
     throw Refused("{} of {} files were refused (see above, and --min-confidence)", refused, jobs.size());
 }
 
-// The command's options as they stand, without the folders: a file that was rigged with others is rigged again, also with other weights.
+// The command's options as they stand, without the folders: a file that was rigged with others is rigged again.
 std::string settings_of(const CLI::App& command) {
   std::string settings = "osteon " OSTEON_VERSION;
   for (const CLI::Option* option : command.get_options({}))

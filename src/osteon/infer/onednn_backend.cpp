@@ -67,7 +67,7 @@ Onednn::Tensor made(tensor::Tensor numbers, std::shared_ptr<const Affine> after 
   return {std::make_shared<Onednn::Value>(Onednn::Value{rows, columns, std::move(after), std::move(numbers), {}})};
 }
 
-constexpr std::size_t kLongSegment = 64;
+constexpr std::size_t kLongSegment = 64;  // rows that fill a product: tensor/packed_linear.cpp
 
 Affine identity(std::size_t columns) { return {std::vector<float>(columns, 1.0f), std::vector<float>(columns, 0.0f)}; }
 

@@ -14,27 +14,31 @@ TriangleMesh turned(TriangleMesh mesh, const Eigen::Matrix3f& turn) {
   return mesh;
 }
 
-TEST(Stance, a_box_on_the_plane_z_stands_along_z_wherever_else_it_is) {
+TEST(Stance, a_box_on_the_plane_z_stands_on_it_wherever_else_it_is) {
   const TriangleMesh on_z = shifted(shapes::box({1, 1, 2}), {5, 0, 1});
-  EXPECT_TRUE(stands_along_z(on_z));
-  EXPECT_TRUE(stands_along_z(shifted(on_z, {0, -3, 0})));
-  EXPECT_TRUE(stands_along_z(shifted(on_z, {0, 0, 4})));  // flies
+  EXPECT_EQ(stance(on_z), Stance::on_z);
+  EXPECT_EQ(stance(shifted(on_z, {0, -3, 0})), Stance::on_z);
+  EXPECT_EQ(stance(shifted(on_z, {0, 0, 4})), Stance::on_z);  // flies
 }
 
-TEST(Stance, in_doubt_y_stays_up) {
+TEST(Stance, turned_to_y_up_it_stands_on_y) {
+  const TriangleMesh on_z = shifted(shapes::box({1, 1, 2}), {5, 0, 1});
+  EXPECT_EQ(stance(turned(on_z, turn_z_up_to_y_up())), Stance::on_y);
+}
+
+TEST(Stance, around_the_origin_on_both_planes_or_sunk_into_one_it_is_unclear) {
   const TriangleMesh box = shapes::box({1, 1, 2});
-  EXPECT_FALSE(stands_along_z(box));                             // around the origin
-  EXPECT_FALSE(stands_along_z(shifted(box, {0, 0.5f, 0})));      // on y = 0
-  EXPECT_FALSE(stands_along_z(shifted(box, {0, 0.5f, 1})));      // on both
-  EXPECT_FALSE(stands_along_z(shifted(box, {0, 0.4f, 1})));      // sunk into y = 0 by a tenth
-  EXPECT_FALSE(stands_along_z(shifted(box, {0, -3.0f, 0.8f})));  // sunk into z = 0 by a tenth
+  EXPECT_EQ(stance(box), Stance::unclear);
+  EXPECT_EQ(stance(shifted(box, {0, 0.5f, 1})), Stance::unclear);
+  EXPECT_EQ(stance(shifted(box, {0, 0.4f, 1})), Stance::unclear);      // sunk into y = 0 by a tenth, on z = 0
+  EXPECT_EQ(stance(shifted(box, {0, -3.0f, 0.8f})), Stance::unclear);  // sunk into z = 0 by a tenth
 }
 
 TEST(Stance, vertices_of_no_face_say_nothing) {
   TriangleMesh mesh = shifted(shapes::box({1, 1, 2}), {0, 0, 1});
   mesh.positions.push_back({0, 0, -100});
-  EXPECT_TRUE(stands_along_z(mesh));
-  EXPECT_FALSE(stands_along_z(TriangleMesh{mesh.positions, {}}));
+  EXPECT_EQ(stance(mesh), Stance::on_z);
+  EXPECT_EQ(stance(TriangleMesh{mesh.positions, {}}), Stance::unclear);
 }
 
 TEST(Stance, the_finer_side_is_that_with_more_faces_than_surface) {

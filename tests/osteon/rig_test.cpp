@@ -105,6 +105,29 @@ TEST_F(RigCommand, a_character_that_stands_on_z_gets_the_same_rig_in_its_own_fra
   }
 }
 
+TEST_F(RigCommand, a_fish_around_the_origin_is_told_upright_by_how_clearly_it_is_seen) {
+  TriangleMesh fish = synth::make_character(synth::Kind::Fish, 3, {82, synth::Finish::Smooth}).mesh;
+  const Vec3f middle = bounds(fish).center();
+  for (Vec3f& p : fish.positions) p -= middle;
+  TriangleMesh z_up = fish;
+  for (Vec3f& p : z_up.positions) p = Vec3f(p.x(), -p.z(), p.y());
+  io::save_obj(folder_ / "y.obj", fish);
+  io::save_obj(folder_ / "z.obj", z_up);
+  ASSERT_EQ(osteon(folder_, "rig y.obj -o y.glb --report y.json").code, 0);
+  const auto run = osteon(folder_, "rig z.obj -o z.glb --report z.json");
+  ASSERT_EQ(run.code, 0);
+  EXPECT_THAT(run.err, HasSubstr("does not tell the up axis"));
+  EXPECT_THAT(test::content(folder_ / "y.json"), HasSubstr("\"up\": \"y\""));
+  EXPECT_THAT(test::content(folder_ / "z.json"), HasSubstr("\"up\": \"z\""));
+  const io::Asset y = io::load(folder_ / "y.glb"), z = io::load(folder_ / "z.glb");
+  EXPECT_EQ(z.skeleton->names, y.skeleton->names);
+  EXPECT_TRUE(*z.weights == *y.weights);
+  for (const JointId j : y.skeleton->names.ids()) {
+    const Vec3f& p = y.skeleton->rest_positions[j];
+    EXPECT_VEC3_NEAR(z.skeleton->rest_positions[j], Vec3f(p.x(), -p.z(), p.y()), 1e-5f);
+  }
+}
+
 TEST_F(RigCommand, a_given_skeleton_is_kept) {
   const Rig puppet = synth::make_character(synth::Kind::Biped, 3, {96, synth::Finish::Smooth});
   ASSERT_EQ(osteon(folder_, "synth biped --seed 3 --smooth --cells 96 -o given.glb").code, 0);

@@ -22,9 +22,11 @@ float sunk(const Eigen::AlignedBox3f& box, Eigen::Index axis) {
 
 }  // namespace
 
-bool stands_along_z(const TriangleMesh& mesh) {
+Stance stance(const TriangleMesh& mesh) {
   const Eigen::AlignedBox3f box = box_of_faces(mesh);
-  return sunk(box, 2) < kStanding && sunk(box, 1) >= sunk(box, 2) + kSunkDeeper;
+  const float y = sunk(box, 1), z = sunk(box, 2);
+  if (z < kStanding && y >= z + kSunkDeeper) return Stance::on_z;
+  return y < kStanding && z >= y + kSunkDeeper ? Stance::on_y : Stance::unclear;
 }
 
 Vec3f finer_side(const TriangleMesh& mesh) {

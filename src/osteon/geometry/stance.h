@@ -6,11 +6,12 @@
 // How a character stands in its file: what its bounding box and its modelling say of the up axis and of its front.
 namespace osteon::geometry {
 
-// Whether the character stands on the plane z = 0 of its file and not on y = 0: z is up then. Measured is how deep the box sinks into a
-// plane, in parts of its height over it, 0 to 0.5: feet on the ground 0, flying 0, in the middle 0.5. True when the box sinks into z = 0 by
-// less than 0.05 and into y = 0 by at least 0.15 more; so wherever there is doubt (a fish around the origin), y stays up.
-// Only corners of faces count.
-bool stands_along_z(const TriangleMesh& mesh);
+// Whether the character stands on the plane y = 0 of its file or on z = 0, so that this axis is up. Measured is how deep the box sinks into
+// a plane, in parts of its height over it, 0 to 0.5: feet on the ground 0, flying 0, in the middle 0.5. It stands on a plane when the box
+// sinks into it by less than 0.05 and into the other by at least 0.15 more; what lies around the origin (a fish) or touches both is
+// unclear. Only corners of faces count.
+enum class Stance { on_y, on_z, unclear };
+Stance stance(const TriangleMesh& mesh);
 
 // Horizontally, in parts of the longest side, y up: how far the middle of the faces, each counted once, lies from the middle of the
 // surface, each counted by its area. Artists model faces, hands and toes finer than backs and heels: it points to the front of seven in

@@ -34,7 +34,7 @@ TriangleMesh turned(TriangleMesh mesh, const Eigen::Matrix3f& turn) {
 
 BodyFrame body_frame(const TriangleMesh& mesh, Up up) {
   BodyFrame frame;
-  frame.is_z_up = up == Up::automatic && geometry::stands_along_z(mesh);
+  frame.is_z_up = up == Up::z || (up == Up::automatic && geometry::stance(mesh) == geometry::Stance::on_z);
   if (frame.is_z_up) frame.turn = geometry::turn_z_up_to_y_up();
   const Vec3f finer = geometry::finer_side(frame.is_z_up ? turned(mesh, frame.turn) : mesh);
   const bool is_along_x = std::abs(finer.x()) > std::abs(finer.z()) && finer.norm() >= kFiner;

@@ -7,7 +7,7 @@
 
 namespace osteon::pipelines {
 
-enum class Up { automatic, y };  // automatic: y, or z where the character stands on the plane z = 0 (geometry/stance.h)
+enum class Up { automatic, y, z };  // automatic: y, or z where the character stands on the plane z = 0 (geometry/stance.h)
 
 // The frame that a character is rigged in. It follows from the shape, not from how the file turns it: y up, and one side along +x. So a
 // character turned by right angles, or given with another axis up, is the same to all that follows, bit by bit.

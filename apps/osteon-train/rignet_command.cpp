@@ -33,7 +33,7 @@ struct Arguments {
   fs::path validation, out, init, attention, attention_out, log;
   std::string device = "cpu";
   int threads = 0;
-  bool resume = false, combined = false, no_augmentation = false, profile = false;
+  bool resume = false, combined = false, no_augmentation = false, no_placement = false, profile = false;
   double bandwidth = 0.04;
   train::TrainOptions options;
 
@@ -68,6 +68,7 @@ void add_common_options(CLI::App& command, Arguments& a) {
       ->capture_default_str();
   command.add_option("--neighbours", a.options.task.batch.neighbours, "Geodesic neighbours of a vertex")->capture_default_str();
   command.add_flag("--no-augmentation", a.no_augmentation, "Show every character as it is");
+  command.add_flag("--no-placement", a.no_placement, "Neither mirror, turn nor stretch the whole character");
   auto& articulate = a.options.augment.articulate;
   command.add_option("--articulate", articulate.probability, "How often a character is bent and scaled through its rig")
       ->check(CLI::Range(0.0, 1.0))
@@ -106,6 +107,11 @@ void add_votes_options(CLI::App& command, Arguments& a) {
   a.options.task.attention_weight = 0.02;
   command.add_option("--density-weight", a.options.task.density_weight, "Of the votes' density at the joints")->capture_default_str();
   command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
+}
+
+void add_bones_options(CLI::App& command, Arguments& a) {
+  command.add_flag("--hide-mesh", a.options.task.batch.hide_mesh, "Studies: the network does not see the shape")->group("Studies");
+  command.add_flag("--hide-joints", a.options.task.batch.hide_joints, "Studies: nor the other joints of the skeleton")->group("Studies");
 }
 
 void add_neuroskinning_options(CLI::App& command, Arguments& a) {
@@ -230,6 +236,7 @@ void run(const CLI::App& command, Task task, Arguments a) {
   }
   if (a.combined) task = Task::collapse;
   if (a.no_augmentation) a.options.augment = dataset::AugmentOptions::none();
+  if (a.no_placement) a.options.augment.place_nothing();
   a.options.task.run.device = at::Device(a.device);
   a.options.task.run.engine = a.options.task.run.device.is_cpu() ? train::Engine::fused : train::Engine::device;
   if (a.options.task.run.device.is_cuda()) at::globalContext().setAllowTF32CuBLAS(true);  // as exact as bf16 with f32 sums needs to be here
@@ -260,6 +267,7 @@ void add_command(CLI::App& app, Task task, const char* name, const char* descrip
   add_common_options(*command, *arguments);
   if (task == Task::joints) add_combined_options(*command, *arguments);
   if (task == Task::votes) add_votes_options(*command, *arguments);
+  if (task == Task::bones) add_bones_options(*command, *arguments);
   if (reads_super_skeleton(task)) add_neuroskinning_options(*command, *arguments);
   command->callback([command, task, arguments] { run(*command, task, *arguments); });
 }

@@ -57,6 +57,16 @@ TEST(TrainingBatch, of_all_changes_together_fits_together) {
     }
 }
 
+TEST(PlainBatch, hides_the_shape_or_the_joints_and_nothing_else) {
+  const Example* one[] = {&examples(Parts::pairs)[0]};
+  const Batch whole = plain_batch(one, {.parts = Parts::pairs});
+  const Batch hidden = plain_batch(one, {.parts = Parts::pairs, .hide_mesh = true, .hide_joints = true});
+  EXPECT_EQ(hidden.inputs.mesh.positions, std::vector<float>(whole.inputs.mesh.positions.size(), 0.0f));
+  EXPECT_EQ(hidden.inputs.joints.positions, std::vector<float>(whole.inputs.joints.positions.size(), 0.0f));
+  EXPECT_EQ(hidden.inputs.pairs.features, whole.inputs.pairs.features);
+  EXPECT_EQ(hidden.targets.connected, whole.targets.connected);
+}
+
 TEST(TrainingBatch, changes_that_are_off_draw_no_random_numbers) {
   PreparedCharacter without_poses = examples(Parts::joints)[0].character;
   without_poses.poses.clear();

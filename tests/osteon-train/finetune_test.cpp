@@ -83,6 +83,9 @@ TEST(Finetune, writes_a_model_folder_and_says_what_was_gained) {
   EXPECT_EQ(run.err, "") << "quiet where there is no terminal";
   EXPECT_NO_THROW(infer::RignetModels::load(folder / "tuned"));
   EXPECT_FALSE(fs::exists(folder / "tuned" / "unfinished"));
+  EXPECT_THAT(run.out, HasSubstr("neuroskinning copied"));
+  EXPECT_TRUE(content(folder / "tuned" / "neuroskinning.safetensors") ==
+              content(fs::path(OSTEON_MODELS_FOLDER) / "rignet" / "neuroskinning.safetensors"));
   const auto table = table_of(run.out);
   for (const char* figure : {"votes loss", "bind loss", "tree loss", "votes to_joints", "bind l1", "tree parents", "tree root"})
     EXPECT_TRUE(table.contains(figure)) << figure << " in\n" << run.out;
@@ -169,7 +172,7 @@ class FinetuneData : public testing::Test {
 TEST_F(FinetuneData, figures_are_those_of_a_fresh_validation_of_the_files) {
   const auto results = train::finetune(
       data(), options("a"), [](const auto&, const auto&) {}, [] { return false; });
-  ASSERT_EQ(results.size(), 3u);
+  ASSERT_EQ(results.size(), 4u);  // and NeuroSkinning, which is copied
   const auto validation = dataset::examples_of(data().validation, train::parts_of(train::Task::bind));
   const auto fresh = [&](const fs::path& folder) {
     train::Model model;

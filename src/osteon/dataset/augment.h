@@ -31,6 +31,9 @@ struct AugmentOptions {
   float flip = 0.0f;                 // probability of other triangles on the same surface
   geometry::EdgeFlipOptions flips = {};
 
+  // The whole character stays as it stands.
+  void place_nothing() { mirror = half_turn = quarter_turn = yaw = tilt = stretch = 0.0f; }
+
   static AugmentOptions none() {
     return {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {.probability = 0.0f}, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 0.0f, 500, 0.0f};
   }

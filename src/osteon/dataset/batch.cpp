@@ -238,6 +238,11 @@ void add_choices(Batch& batch, const Example& example, const Placement& placemen
   add_skin_targets(batch, example.skin_targets);
 }
 
+void hide(Batch& batch, const BatchOptions& options) {
+  if (options.hide_mesh) std::ranges::fill(batch.inputs.mesh.positions, 0.0f);
+  if (options.hide_joints) std::ranges::fill(batch.inputs.joints.positions, 0.0f);
+}
+
 }  // namespace
 
 std::vector<Example> examples_of(std::vector<PreparedCharacter> characters, Parts parts) {
@@ -305,6 +310,7 @@ Batch training_batch(std::span<const Example* const> examples, const BatchOption
       add_pair(batch, example, pair, placement);
     }
   }
+  hide(batch, options);
   return batch;
 }
 
@@ -328,6 +334,7 @@ Batch plain_batch(std::span<const Example* const> examples, const BatchOptions& 
     for (const Pair& pair : pairs) add_pair(batch, *example, pair, {});
     for (const Pair& pair : pairs) add_pair(batch, *example, {pair.second, pair.first, pair.row}, {});
   }
+  hide(batch, options);
   return batch;
 }
 

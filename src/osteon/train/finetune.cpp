@@ -131,6 +131,11 @@ std::vector<FinetunedNetwork> finetune(const FinetuneData& data, const FinetuneO
     results.push_back(
         {name, figures_of(recipe, options.init, validation, training), figures_of(recipe, options.output, validation, training)});
   }
+  // NeuroSkinning stays as it is: without it the weights would be the binding network's alone.
+  if (const fs::path second = file_of(options.init, Network::neuroskinning); fs::exists(second)) {
+    fs::copy_file(second, file_of(options.output, Network::neuroskinning), fs::copy_options::overwrite_existing);
+    results.push_back({name_of(Network::neuroskinning), {}, {}});
+  }
   return results;
 }
 

@@ -80,5 +80,34 @@ TEST(RigReport, covered_share_counts_rows_within_reach) {
   EXPECT_EQ(covered_share(Matrix(0, 0), 0.2f), 0.0f);
 }
 
+TEST(Pooled, of_two_that_agree_is_what_they_say_but_sharper) {
+  Matrix a(2, 3);
+  a << 0.7f, 0.3f, 0.0f, 0.5f, 0.5f, 0.0f;
+  const Matrix both = pooled(a, a, 0.3f);
+  const float x = std::pow(0.7f, 1.2f), y = std::pow(0.3f, 1.2f);
+  EXPECT_NEAR(both(0, 0), x / (x + y), 1e-5f);
+  EXPECT_NEAR(both(0, 1), y / (x + y), 1e-5f);
+  EXPECT_NEAR(both(1, 0), 0.5f, 1e-5f);
+  EXPECT_NEAR(both(0, 2), 0.0f, 1e-6f);
+}
+
+TEST(Pooled, what_one_of_both_rules_out_is_nearly_out) {
+  Matrix a(1, 3), b(1, 3);
+  a << 0.5f, 0.5f, 0.0f;
+  b << 0.5f, 0.0f, 0.5f;
+  const Matrix both = pooled(a, b, 0.5f);
+  EXPECT_NEAR(both.sum(), 1.0f, 1e-6f);
+  EXPECT_EQ(both(0, 1), both(0, 2));
+  EXPECT_GT(both(0, 0), 0.65f);  // their mean is 0.5, 0.25, 0.25
+}
+
+TEST(Pooled, is_the_same_for_columns_in_another_order_and_the_shares_the_other_way_round) {
+  Matrix a(1, 3), b(1, 3);
+  a << 0.6f, 0.3f, 0.1f;
+  b << 0.2f, 0.2f, 0.6f;
+  const Matrix both = pooled(a, b, 0.25f), other = pooled(b.rowwise().reverse(), a.rowwise().reverse(), 0.75f);
+  EXPECT_LT((both - other.rowwise().reverse()).cwiseAbs().maxCoeff(), 1e-6f);
+}
+
 }  // namespace
 }  // namespace osteon::pipelines

@@ -357,8 +357,8 @@ Matrix predict_weights(const std::vector<Bone>& bones, std::size_t joints, const
   return skin::distance_weights(distances, bones, joints);
 }
 
-// The mean of the binding network's weights and NeuroSkinning's (its own, with geodesic voxel binding in it): they learned the same from
-// different evidence, and err in different places.
+// The binding network's weights and NeuroSkinning's (its own, with geodesic voxel binding in it): they learned the same from different
+// evidence, and err in different places.
 Matrix heard_beside(const Matrix& raw, const infer::NeuroskinningModel& second, const Skeleton& skeleton, const Body& body, float share,
                     Stages& stages, std::vector<std::string>& warnings) {
   Skeleton placed = skeleton;
@@ -366,9 +366,8 @@ Matrix heard_beside(const Matrix& raw, const infer::NeuroskinningModel& second, 
   const TriangleMesh& mesh = body.working.mesh;
   const auto near = stages.run("wide neighbourhoods", [&] { return neuroskinning_neighbours(mesh); });
   const auto inputs = stages.run("joint choices", [&] { return neuroskinning_inputs(mesh, body.ring, near, placed, second); });
-  return stages.run("second network", [&]() -> Matrix {
-    return (1.0f - share) * raw + share * neuroskinning_rows(inputs, second, kGeometricShare, warnings);
-  });
+  return stages.run("second network",
+                    [&]() -> Matrix { return pooled(raw, neuroskinning_rows(inputs, second, kGeometricShare, warnings), share); });
 }
 
 void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances, const RignetOptions& options, RigReport& report) {
@@ -409,8 +408,8 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   SkinPredictionOptions finish = options.skin;
   if (const auto* second = models.neuroskinning(); second && options.ablation.neuroskinning > 0.0f && skeleton.size() > 1) {
     raw = heard_beside(raw, *second, skeleton, body, options.ablation.neuroskinning, stages, report.warnings);
-    finish.smooth = finish.smooth.value_or(0);  // a mean of three is smooth by itself, and few are sure of what is little
-    finish.prune_share = finish.prune_share.value_or(0.1f);
+    finish.smooth = finish.smooth.value_or(0);  // three together are smooth by themselves, and what they call little is little
+    finish.prune_share = finish.prune_share.value_or(0.05f);
   }
   result.weights = stages.run("weights", [&] {
     const auto partners = joint_partners(skeleton, body);

@@ -18,6 +18,15 @@ Matrix joint_weights(const Matrix& bone_weights, const geometry::IndexMatrix& ne
   return out;
 }
 
+Matrix pooled(const Matrix& a, const Matrix& b, float share) {
+  constexpr float kUnsure = 0.03f, kSharper = 1.2f;
+  Matrix out = ((1.0f - share) * (a.array() + kUnsure).log() + share * (b.array() + kUnsure).log()).exp().matrix();
+  out = (out.array() - kUnsure).cwiseMax(0.0f).pow(kSharper).matrix();
+  for (auto row : out.rowwise())
+    if (const float sum = row.sum(); sum > 0.0f) row /= sum;
+  return out;
+}
+
 SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& working, const geometry::Neighbourhoods& one_ring,
                            const SkinPredictionOptions& options) {
   const auto columns = static_cast<std::size_t>(raw.cols());

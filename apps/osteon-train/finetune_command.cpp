@@ -131,7 +131,7 @@ void finetune(const CLI::App& command, FinetuneArguments a) {
   a.options.output = a.output;
   a.options.checkpoints = unfinished.folder;
   a.options.run.device = at::Device(a.device);
-  a.options.run.engine = a.options.run.device.is_cpu() ? train::Engine::fused : train::Engine::plain;
+  a.options.run.engine = a.options.run.device.is_cpu() ? train::Engine::fused : train::Engine::device;
   if (a.options.steps > 0) a.options.minutes = 0.0;
 
   std::vector<train::FinetunedNetwork> networks;

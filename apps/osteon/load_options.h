@@ -20,7 +20,7 @@ inline void add_load_options(CLI::App& command, io::LoadOptions& options) {
   command
       .add_option_function<std::string>(
           "--up", [&options](const std::string& up) { options.up = up == "auto" ? std::nullopt : std::optional(up_axes().at(up)); },
-          "Axis of the file that points up (auto: what the file says, or else y; rig sees when z is up)")
+          "Axis of the file that points up (auto: what the file says, or else y; rig also looks whether it is z)")
       ->check(CLI::IsMember({"auto", "x", "y", "z"}))
       ->type_name("auto|x|y|z");
   command

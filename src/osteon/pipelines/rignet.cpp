@@ -255,6 +255,7 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
   return std::move(made.skeleton);
 }
 
+// A character as it was looked at, with one axis up.
 struct Seen {
   Body body;
   Skeleton skeleton;  // in its frame
@@ -269,7 +270,7 @@ Seen look_at(const TriangleMesh& mesh, const infer::RignetModels& models, const 
 }
 
 // Where its stance does not tell which axis is up, the character is looked at both ways. z is up where the votes gather clearly better
-// then.
+// then and the rig is surer. A mesh with y up may be taken so in one of the four ways that it can be turned and not in another.
 Seen look_upright(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options, RignetResult& result,
                   Stages& stages, const Progress& progress) {
   Seen seen = look_at(mesh, models, options, result, stages);

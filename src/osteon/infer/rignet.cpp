@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ namespace osteon::infer {
 
 struct RignetModels::Networks {
   std::array<std::unique_ptr<NetworkRunner>, nets::rignet::kNetworks.size()> by_network;  // those that are not in the folder are empty
-
+  std::unique_ptr<NetworkRunner> second_votes;
   std::optional<NeuroskinningModel> neuroskinning;
 
   bool has(nets::rignet::Network network) const { return by_network[static_cast<std::size_t>(network)] != nullptr; }
@@ -37,6 +38,7 @@ using nets::rignet::name_of;
 using nets::rignet::Network;
 
 fs::path file_of(const fs::path& folder, Network network) { return folder / fmt::format("{}.safetensors", name_of(network)); }
+fs::path file_of_second_votes(const fs::path& folder) { return folder / "second_votes.safetensors"; }
 
 // The large ones first, so that loading them in parallel ends evenly.
 std::vector<Network> networks_in(const fs::path& folder) {
@@ -175,16 +177,20 @@ std::unique_ptr<RignetModels::Networks> RignetModels::load_networks(const fs::pa
                                                                     tensor::Precision precision) {
   const std::vector<Network> present = networks_in(folder);
   auto networks = std::make_unique<Networks>();
-  const bool has_second = fs::exists(file_of(folder, Network::neuroskinning));
-  parallel_for(present.size() + (has_second ? 1 : 0), 1, [&](std::size_t i, std::size_t) {
-    if (i == present.size()) {
-      networks->neuroskinning = NeuroskinningModel::load(folder, precision);
-      return;
-    }
-    auto runner = make_runner(present[i], file_of(folder, present[i]));
+  const auto packed = [&](Network network, const fs::path& weights) {
+    auto runner = make_runner(network, weights);
     pack_weights(*runner);
-    networks->by_network[static_cast<std::size_t>(present[i])] = std::move(runner);
-  });
+    return runner;
+  };
+  std::vector<std::function<void()>> loads;
+  if (fs::exists(file_of_second_votes(folder)))
+    loads.emplace_back([&] { networks->second_votes = packed(Network::votes, file_of_second_votes(folder)); });
+  for (const Network network : present)
+    loads.emplace_back(
+        [&, network] { networks->by_network[static_cast<std::size_t>(network)] = packed(network, file_of(folder, network)); });
+  if (fs::exists(file_of(folder, Network::neuroskinning)))
+    loads.emplace_back([&] { networks->neuroskinning = NeuroskinningModel::load(folder, precision); });
+  parallel_for(loads.size(), 1, [&](std::size_t i, std::size_t) { loads[i](); });
   return networks;
 }
 
@@ -195,10 +201,14 @@ RignetModels::~RignetModels() = default;
 RignetModels::RignetModels(RignetModels&&) noexcept = default;
 RignetModels& RignetModels::operator=(RignetModels&&) noexcept = default;
 
-JointVotes RignetModels::votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs) const {
+int RignetModels::voters() const { return networks_->second_votes ? 2 : 1; }
+
+JointVotes RignetModels::votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs, int voter) const {
+  assert(voter >= 0 && voter < voters());
   const auto output = [&](Network network) { return networks_->run(network, {mesh}); };
   if (!networks_->has(Network::votes)) return {output(Network::joints), sigmoid(output(Network::attention))};
-  const Matrix both = networks_->run(Network::votes, {.mesh = mesh, .votes = &vote_inputs});
+  const NetworkInput input{.mesh = mesh, .votes = &vote_inputs};
+  const Matrix both = voter == 0 ? networks_->run(Network::votes, input) : networks_->second_votes->run(input);
   const Eigen::Map<const Matrix> features(vote_inputs.features.data(), both.rows(), nets::vote_features);
   return {features.middleCols(nets::vote_to_middle, 3) + nets::vote_unit * both.leftCols(3), sigmoid(both.rightCols(1))};
 }

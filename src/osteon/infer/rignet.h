@@ -37,7 +37,8 @@ struct JointVotes {
 class RignetModels {
  public:
   // From {votes,tree,bind}.safetensors, float32 or float16. The paper's networks may be there instead: joints and attention for votes,
-  // bones and root for tree, skin for bind. neuroskinning.safetensors is read too where it is there. Throws one Error that names each
+  // bones and root for tree, skin for bind. second_votes.safetensors, another voting network, and neuroskinning.safetensors are read too
+  // where they are there. Throws one Error that names each
   // missing file, or each parameter of a file that does not fit. Throws Error where products in bf16 are asked for and this processor has
   // none.
   static RignetModels load(const std::filesystem::path& folder, tensor::Precision precision = tensor::Precision::f32);
@@ -49,7 +50,8 @@ class RignetModels {
   RignetModels(RignetModels&&) noexcept;
   RignetModels& operator=(RignetModels&&) noexcept;
 
-  JointVotes votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs) const;
+  int voters() const;  // how many voting networks there are, 1 or 2
+  JointVotes votes(const nets::MeshArrays& mesh, const nets::VoteArrays& vote_inputs, int voter = 0) const;  // 0 <= voter < voters()
 
   // Whether every joint's parent comes from the tree network: then parent_probabilities() may be asked, else the two after it.
   bool finds_parents() const;

@@ -15,12 +15,20 @@ constexpr float kJointsAtThousand = 13.4f, kJointsExponent = 0.41f;  // of the r
 constexpr float kTurn = 0.15f;     // radians about the vertical, within what the networks were trained with
 constexpr float kStretch = 1.06f;  // of the height of the turned views, and its inverse
 
-std::array<Eigen::Matrix3f, 4> views() {
+struct View {
+  Eigen::Matrix3f of_character;
+  bool from_behind;
+};
+
+std::array<View, 4> views() {
   const auto turned = [](float angle, float height) {
     return Eigen::Matrix3f(Eigen::AngleAxisf(angle, Vec3f::UnitY()).toRotationMatrix() * Vec3f(1.0f, height, 1.0f).asDiagonal());
   };
   const Eigen::Matrix3f mirror = Vec3f(-1.0f, 1.0f, 1.0f).asDiagonal(), about = Vec3f(-1.0f, 1.0f, -1.0f).asDiagonal();
-  return {Eigen::Matrix3f::Identity(), mirror, about * turned(kTurn, kStretch), about * mirror * turned(kTurn, 1.0f / kStretch)};
+  return {{{Eigen::Matrix3f::Identity(), false},
+           {mirror, false},
+           {about * turned(kTurn, kStretch), true},
+           {about * mirror * turned(kTurn, 1.0f / kStretch), true}}};
 }
 
 geometry::VoteFeatures seen(geometry::VoteFeatures features, const Eigen::Matrix3f& view, float scale) {
@@ -43,7 +51,7 @@ JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& gr
                             const infer::RignetModels& models, float joints) {
   const geometry::VoteFeatures features = geometry::vote_features(mesh);
   JointCandidates out;
-  for (const Eigen::Matrix3f& view : views()) {
+  for (const auto& [view, from_behind] : views()) {
     TriangleMesh shown = mesh;
     for (Vec3f& p : shown.positions) p = view * p;
     const geometry::Normalization frame = geometry::normalization_of(shown);
@@ -55,7 +63,7 @@ JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& gr
     }
     nets::VoteArrays inputs;
     inputs.add(geometry::vote_rows(shown.positions.raw(), seen(features, view, frame.scale), joints), regions.seeds, regions.region_of, 0);
-    const infer::JointVotes votes = models.votes(arrays, inputs);
+    const infer::JointVotes votes = models.votes(arrays, inputs, from_behind ? models.voters() - 1 : 0);
     const Eigen::Matrix3f back = view.inverse();
     for (Eigen::Index v = 0; v < votes.attention.rows(); ++v) {
       const Vec3f q = shown.positions.raw()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose();

@@ -14,8 +14,9 @@ float expected_joints(std::size_t triangles, float detail);
 
 // Where the vertices of a working mesh see joints, in its frame. The network is shown the character several times: as it is, mirrored, and
 // both from behind, turned and stretched a little; all answers are heard together, so that one chance error counts less, and so that nobody
-// has to know the front: (4V) candidates, V for each view. `joints`: how many the rig shall have, roughly. `graph` and `regions` are those
-// of `mesh`. Pre: `mesh` is normalised.
+// has to know the front: (4V) candidates, V for each view. Where there are two voting networks the second one sees it from behind: it costs
+// no more time than one for all, and they err in different places. `joints`: how many the rig shall have, roughly. `graph` and `regions`
+// are those of `mesh`. Pre: `mesh` is normalised.
 JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& graph, const geometry::Regions& regions,
                             const infer::RignetModels& models, float joints);
 

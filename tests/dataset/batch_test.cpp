@@ -61,8 +61,16 @@ TEST(PlainBatch, hides_the_shape_or_the_joints_and_nothing_else) {
   const Example* one[] = {&examples(Parts::pairs)[0]};
   const Batch whole = plain_batch(one, {.parts = Parts::pairs});
   const Batch hidden = plain_batch(one, {.parts = Parts::pairs, .hide_mesh = true, .hide_joints = true});
-  EXPECT_EQ(hidden.inputs.mesh.positions, std::vector<float>(whole.inputs.mesh.positions.size(), 0.0f));
-  EXPECT_EQ(hidden.inputs.joints.positions, std::vector<float>(whole.inputs.joints.positions.size(), 0.0f));
+  Example grown = *one[0];
+  for (Vec3f& p : grown.character.mesh.positions) p *= 1.1f;
+  for (Vec3f& p : grown.character.skeleton.rest_positions) p *= 1.1f;
+  const Example* other[] = {&grown};
+  const Batch as_hidden = plain_batch(other, {.parts = Parts::pairs, .hide_mesh = true, .hide_joints = true});
+  EXPECT_EQ(hidden.inputs.mesh.positions, as_hidden.inputs.mesh.positions);
+  EXPECT_EQ(hidden.inputs.joints.positions, as_hidden.inputs.joints.positions);
+  EXPECT_NE(whole.inputs.mesh.positions, plain_batch(other, {.parts = Parts::pairs}).inputs.mesh.positions);
+  EXPECT_NE(hidden.inputs.mesh.positions, whole.inputs.mesh.positions);
+  EXPECT_NE(hidden.inputs.joints.positions, whole.inputs.joints.positions);
   EXPECT_EQ(hidden.inputs.pairs.features, whole.inputs.pairs.features);
   EXPECT_EQ(hidden.targets.connected, whole.targets.connected);
 }

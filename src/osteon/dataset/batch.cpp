@@ -238,9 +238,15 @@ void add_choices(Batch& batch, const Example& example, const Placement& placemen
   add_skin_targets(batch, example.skin_targets);
 }
 
+// Noise, not zeros: normalisations blow up what does not vary, and its gradients drown all others.
+void hide(std::vector<float>& positions) {
+  Random random(positions.size());
+  for (float& x : positions) x = random.uniform(0.0f, 1.0f);
+}
+
 void hide(Batch& batch, const BatchOptions& options) {
-  if (options.hide_mesh) std::ranges::fill(batch.inputs.mesh.positions, 0.0f);
-  if (options.hide_joints) std::ranges::fill(batch.inputs.joints.positions, 0.0f);
+  if (options.hide_mesh) hide(batch.inputs.mesh.positions);
+  if (options.hide_joints) hide(batch.inputs.joints.positions);
 }
 
 }  // namespace

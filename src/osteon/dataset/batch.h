@@ -60,7 +60,7 @@ struct BatchOptions {
   Parts parts = Parts::joints;                                     // joints: attention too; pairs: joints too; tree: joints alone, no mesh
   std::size_t neighbours = 10;                                     // geodesic ones of a vertex
   std::shared_ptr<const skin::SuperSkeleton> super_skeleton = {};  // neuro and neuro_2019
-  bool hide_mesh = false, hide_joints = false;                     // their positions are all 0: what do the pairs' own features tell alone?
+  bool hide_mesh = false, hide_joints = false;                     // their positions are noise: what do the pairs' own features tell alone?
 };
 
 // For training: every character changed through its rig and placed anew, neighbours drawn anew, each pair of joints in random order.

@@ -183,7 +183,7 @@ std::unique_ptr<RignetModels::Networks> RignetModels::load_networks(const fs::pa
     return runner;
   };
   std::vector<std::function<void()>> loads;
-  if (fs::exists(file_of_second_votes(folder)))
+  if (present.front() == Network::votes && fs::exists(file_of_second_votes(folder)))
     loads.emplace_back([&] { networks->second_votes = packed(Network::votes, file_of_second_votes(folder)); });
   for (const Network network : present)
     loads.emplace_back(

@@ -37,10 +37,9 @@ struct JointVotes {
 class RignetModels {
  public:
   // From {votes,tree,bind}.safetensors, float32 or float16. The paper's networks may be there instead: joints and attention for votes,
-  // bones and root for tree, skin for bind. second_votes.safetensors, another voting network, and neuroskinning.safetensors are read too
-  // where they are there. Throws one Error that names each
-  // missing file, or each parameter of a file that does not fit. Throws Error where products in bf16 are asked for and this processor has
-  // none.
+  // bones and root for tree, skin for bind. second_votes.safetensors, another voting network beside votes, and neuroskinning.safetensors
+  // are read too where they are there. Throws one Error that names each missing file, or each parameter of a file that does not fit. Throws
+  // Error where products in bf16 are asked for and this processor has none.
   static RignetModels load(const std::filesystem::path& folder, tensor::Precision precision = tensor::Precision::f32);
   // By other means than oneDNN on the CPU (torch_infer/torch_runner.h). `make_runner` may be called by several threads at once.
   static RignetModels load(const std::filesystem::path& folder, const RunnerFactory& make_runner);

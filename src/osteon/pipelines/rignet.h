@@ -58,12 +58,12 @@ struct RignetResult {
 // The same for any order of vertices and faces (weights follow their vertices) and any number of threads.
 // The same, turned, for a mesh turned by right angles about the up axis, or that stands on z = 0 instead of y = 0. Where it stands on
 // neither (geometry/stance.h), z is up if 0.08 more of the attention points at a joint then and the confidence is 0.05 more than with y up,
-// which takes twice the time to find out and may
-// fall out otherwise for the same mesh turned. Where the mesh is its own mirror image vertex by vertex, so is the rig: the joints (to
-// rounding; bit by bit where the mesh is so, with its plane at x = 0 or z = 0), the tree, the names (left and right), and bit by bit the
-// weights. Where only the shape is symmetric, the weights are as a field. Two exceptions: a skeleton without any joint on the plane has its
-// root on one side, and a joint without partner (a sword) leaves all weights as they are. Throws Error for a mesh without surface, options
-// out of range or an invalid skeleton; Cancelled if `progress` does. Pre: validate(mesh) holds.
+// which takes twice the time to find out and may fall out otherwise for the same mesh turned. Where the mesh is its own mirror image vertex
+// by vertex, so is the rig: the joints (to rounding; bit by bit where the mesh is so, with its plane at x = 0 or z = 0), the tree, the
+// names (left and right), and bit by bit the weights. Where only the shape is symmetric, the weights are as a field. Two exceptions: a
+// skeleton without any joint on the plane has its root on one side, and a joint without partner (a sword) leaves all weights as they are.
+// Throws Error for a mesh without surface, options out of range or an invalid skeleton; Cancelled if `progress` does. Pre: validate(mesh)
+// holds.
 RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options = {},
                            const Progress& progress = {});
 

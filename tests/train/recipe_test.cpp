@@ -70,10 +70,14 @@ void PrintTo(const Recipe& recipe, std::ostream* out) { *out << "loss " << recip
 
 class RecipeOfOurs : public ::testing::TestWithParam<Recipe> {};
 
+// Against a network that never learns on the very same batches: which characters are drawn changes a loss more than thirty steps do.
 TEST_P(RecipeOfOurs, lowers_the_loss_in_thirty_steps_of_augmented_characters) {
-  const std::vector<double> found = losses(GetParam(), 30);
-  ASSERT_EQ(found.size(), 30u);
-  EXPECT_LT(mean(std::span(found).last(5)), 0.97 * mean(std::span(found).first(5)));
+  Recipe never = GetParam();
+  never.learning_rate = 0.0;
+  const std::vector<double> learned = losses(GetParam(), 30), unlearned = losses(never, 30);
+  ASSERT_EQ(learned.size(), 30u);
+  ASSERT_EQ(unlearned.size(), 30u);
+  EXPECT_LT(mean(std::span(learned).last(5)), 0.9 * mean(std::span(unlearned).last(5)));
 }
 
 class AnyRecipe : public ::testing::TestWithParam<Recipe> {};
@@ -86,8 +90,8 @@ constexpr Recipe votes{Task::votes, 2e-4, 0.325792}, bind{Task::bind, 3e-3, 1.57
     root{Task::root, 1e-3, 2.040163}, tree{Task::tree, 2e-3, 3.959987}, joints{Task::joints, 1e-3, 0.106922},
     attention{Task::attention, 1e-3, 0.723381}, skin{Task::skin, 1e-3, 1.720464}, neuroskinning{Task::neuroskinning, 3e-3, 0.921843},
     neuroskinning_2019{Task::neuroskinning_2019, 1e-3, 2.188107};
-// Not votes: which characters are drawn changes their loss more than thirty steps do. Learning.thirty_steps_lower_the_loss shows them the
-// same characters in every step.
+// The quick ones, and not votes, which thirty steps from nothing hardly change (Learning.thirty_steps_lower_the_loss shows all networks
+// the same characters in every step).
 INSTANTIATE_TEST_SUITE_P(Training, RecipeOfOurs, ::testing::Values(bind, tree, bones, root, neuroskinning));
 INSTANTIATE_TEST_SUITE_P(Training, AnyRecipe,
                          ::testing::Values(votes, bind, tree, bones, root, joints, attention, skin, neuroskinning, neuroskinning_2019));

@@ -263,6 +263,20 @@ TEST(ConnectJoints, without_the_network_the_nearest_joints_are_joined) {
   EXPECT_TRUE(joined(1, 2));
 }
 
+TEST(ConnectJoints, around_the_origin_the_likelier_tree_of_both_up_axes_is_it) {
+  const Vec3f middle = bounds(figure()).center();
+  const TriangleMesh mesh = shapes::transformed(figure(), Transform(Eigen::Translation3f(-middle)));
+  Skeleton skeleton = straight(mesh);
+  skeleton.add("side", JointId{0}, {40, 30, 5});
+  const auto tree_of = [&](Up up) { return connect_joints(mesh, skeleton.rest_positions.raw(), untrained(), {.up = up}).tree; };
+  const JointTree y = tree_of(Up::y), z = tree_of(Up::z), found = tree_of(Up::automatic);
+  ASSERT_NE(y.likelihood, z.likelihood);
+  const JointTree& likelier = y.likelihood > z.likelihood ? y : z;
+  EXPECT_EQ(found.likelihood, likelier.likelihood);
+  EXPECT_EQ(found.root, likelier.root);
+  EXPECT_EQ(found.parents, likelier.parents);
+}
+
 TEST(RigCharacter, shapes_that_are_no_characters_get_a_valid_rig_too) {
   const std::pair<const char*, TriangleMesh> meshes[] = {
       {"cube", shapes::box({1, 1, 1})},

@@ -385,6 +385,22 @@ void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances,
   if (options.skeleton) report.confidence = report.coverage;
 }
 
+// The joints are in the mesh's world coordinates.
+ConnectedJoints connect_upright(const TriangleMesh& mesh, std::span<const Vec3f> joints, const infer::RignetModels& models,
+                                const RignetOptions& options) {
+  RigReport report;
+  const Progress nobody;
+  Stages stages(report, nobody);
+  const Body body = study(mesh, options, stages);
+  std::vector<Vec3f> positions;
+  for (const Vec3f& p : joints) positions.push_back(body.working.normalization.apply(body.frame.turn * p));
+  ConnectedJoints out;
+  out.joints = joint_set_of(positions, body.symmetry);
+  out.evidence = evidence(out.joints, body, models, options.ablation);
+  out.tree = connect(out.joints, out.evidence, options.tree);
+  return out;
+}
+
 }  // namespace
 
 RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options,
@@ -427,17 +443,12 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
 ConnectedJoints connect_joints(const TriangleMesh& mesh, std::span<const Vec3f> joints, const infer::RignetModels& models,
                                const RignetOptions& options) {
   check(options);
-  RigReport report;
-  const Progress nobody;
-  Stages stages(report, nobody);
-  const Body body = study(mesh, options, stages);
-  std::vector<Vec3f> positions;
-  for (const Vec3f& p : joints) positions.push_back(body.working.normalization.apply(body.frame.turn * p));
-  ConnectedJoints out;
-  out.joints = joint_set_of(positions, body.symmetry);
-  out.evidence = evidence(out.joints, body, models, options.ablation);
-  out.tree = connect(out.joints, out.evidence, options.tree);
-  return out;
+  ConnectedJoints out = connect_upright(mesh, joints, models, options);
+  if (options.up != Up::automatic || geometry::stance(mesh) != geometry::Stance::unclear) return out;
+  RignetOptions z_up = options;
+  z_up.up = Up::z;
+  ConnectedJoints lying = connect_upright(mesh, joints, models, z_up);
+  return lying.tree.likelihood > out.tree.likelihood ? lying : out;
 }
 
 }  // namespace osteon::pipelines

@@ -75,7 +75,8 @@ struct ConnectedJoints {
 };
 
 // Only the connectivity of RigNet (sec. 4.2): `joints`, in the mesh's world coordinates, become a tree. Joints within 0.01 (longest side 1)
-// of being mirror images of one another are partners.
+// of being mirror images of one another are partners. Where how the mesh stands tells no up axis, y and z are both tried, and the likelier
+// tree is it; the joints' frame is then the one in which it was found.
 // Throws Error for a mesh without surface. Pre: validate(mesh) holds; there are joints.
 ConnectedJoints connect_joints(const TriangleMesh& mesh, std::span<const Vec3f> joints, const infer::RignetModels& models,
                                const RignetOptions& options = {});

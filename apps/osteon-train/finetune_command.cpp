@@ -105,11 +105,11 @@ std::string remark(const train::TrainReport& report, std::map<std::string, doubl
 }
 
 void print_table(const std::vector<train::FinetunedNetwork>& networks) {
-  std::printf("%-8s %-12s %10s %10s\n", "network", "validation", "before", "after");
+  std::printf("%-14s %-12s %10s %10s\n", "network", "validation", "before", "after");
   for (const auto& network : networks) {
-    if (network.before.empty()) std::printf("%-8s copied\n", network.name.c_str());
+    if (network.before.empty()) std::printf("%-14s copied\n", network.name.c_str());
     for (const auto& [figure, value] : network.before)
-      std::printf("%-8s %-12s %10.4f %10.4f\n", network.name.c_str(), figure.c_str(), value, network.after.at(figure));
+      std::printf("%-14s %-12s %10.4f %10.4f\n", network.name.c_str(), figure.c_str(), value, network.after.at(figure));
   }
 }
 

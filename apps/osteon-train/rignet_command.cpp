@@ -181,7 +181,7 @@ bool reads_super_skeleton(Task task) { return task == Task::neuroskinning || tas
 
 // That of the weights to start from, or a new one of all training characters.
 skin::SuperSkeleton super_skeleton_of(const Corpus& corpus, const fs::path& init) {
-  if (!init.empty()) return skin::SuperSkeleton::from_json(load_safetensors(init).metadata.at("super_skeleton"));
+  if (!init.empty()) return train::load_super_skeleton(init);
   std::vector<skin::NamedSkeleton> skeletons;
   for (const dataset::Example& e : corpus.examples) skeletons.push_back({&e.character.skeleton, e.character.info.group});
   return skin::learn_super_skeleton(skeletons, {.slots = nets::neuro_slots, .kinds = nets::neuro_kinds});

@@ -58,6 +58,8 @@ void save_characters(const fs::path& folder) {
     save(folder / (seed > 4 ? "more" : "") / fmt::format("{}.glb", seed), synth::make_character(synth::Kind::Biped, seed, coarse()));
 }
 
+constexpr const char* kNetworks[] = {"votes", "bind", "neuroskinning", "tree"};
+
 // A triangle without a skin.
 constexpr const char* kTriangle = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
@@ -83,13 +85,15 @@ TEST(Finetune, writes_a_model_folder_and_says_what_was_gained) {
   EXPECT_EQ(run.err, "") << "quiet where there is no terminal";
   EXPECT_NO_THROW(infer::RignetModels::load(folder / "tuned"));
   EXPECT_FALSE(fs::exists(folder / "tuned" / "unfinished"));
-  EXPECT_THAT(run.out, HasSubstr("neuroskinning copied"));
-  EXPECT_TRUE(content(folder / "tuned" / "neuroskinning.safetensors") ==
-              content(fs::path(OSTEON_MODELS_FOLDER) / "rignet" / "neuroskinning.safetensors"));
+  const auto super_skeleton = [](const fs::path& models) {
+    return load_safetensors(models / "neuroskinning.safetensors").metadata.at("super_skeleton");
+  };
+  EXPECT_EQ(super_skeleton(folder / "tuned"), super_skeleton(fs::path(OSTEON_MODELS_FOLDER) / "rignet"));
   const auto table = table_of(run.out);
-  for (const char* figure : {"votes loss", "bind loss", "tree loss", "votes to_joints", "bind l1", "tree parents", "tree root"})
+  for (const char* figure :
+       {"votes loss", "bind loss", "tree loss", "votes to_joints", "bind l1", "neuroskinning l1", "tree parents", "tree root"})
     EXPECT_TRUE(table.contains(figure)) << figure << " in\n" << run.out;
-  for (const char* network : {"votes", "bind", "tree"}) {
+  for (const char* network : kNetworks) {
     const auto& [before, after] = table.at(std::string(network) + " loss");
     EXPECT_LE(after, before) << network;
     const auto metadata = load_safetensors(folder / "tuned" / fmt::format("{}.safetensors", network)).metadata;
@@ -172,7 +176,7 @@ class FinetuneData : public testing::Test {
 TEST_F(FinetuneData, figures_are_those_of_a_fresh_validation_of_the_files) {
   const auto results = train::finetune(
       data(), options("a"), [](const auto&, const auto&) {}, [] { return false; });
-  ASSERT_EQ(results.size(), 4u);  // and NeuroSkinning, which is copied
+  ASSERT_EQ(results.size(), std::size(kNetworks));
   const auto validation = dataset::examples_of(data().validation, train::parts_of(train::Task::bind));
   const auto fresh = [&](const fs::path& folder) {
     train::Model model;
@@ -197,11 +201,40 @@ TEST_F(FinetuneData, stopped_and_gone_on_with_gives_the_same_bytes) {
     } catch (const Cancelled&) {
     }
   }
-  for (const char* network : {"votes", "bind", "tree"}) {
+  for (const char* network : kNetworks) {
     const auto whole = load_safetensors(folder_ / "whole" / fmt::format("{}.safetensors", network)),
                parts = load_safetensors(folder_ / "parts" / fmt::format("{}.safetensors", network));
     for (const auto& [name, array] : whole.arrays) EXPECT_EQ(array.bytes, parts.at(name).bytes) << network << ' ' << name;
   }
+}
+
+TEST_F(FinetuneData, what_the_start_lacks_is_not_tuned) {
+  train::FinetuneOptions three = options("three");
+  const fs::path init = folder_ / "init";
+  fs::create_directories(init);
+  for (const char* name : {"votes", "bind", "tree"})
+    fs::copy(three.init / fmt::format("{}.safetensors", name), init / fmt::format("{}.safetensors", name));
+  three.init = init;
+  const auto results = train::finetune(
+      data(), three, [](const auto&, const auto&) {}, [] { return false; });
+  ASSERT_EQ(results.size(), 3u);
+  EXPECT_FALSE(fs::exists(three.output / "neuroskinning.safetensors"));
+}
+
+TEST_F(FinetuneData, weights_without_the_joints_that_they_read_are_refused) {
+  train::FinetuneOptions bare = options("bare");
+  const fs::path init = folder_ / "nameless";
+  fs::copy(bare.init, init);
+  Safetensors content = load_safetensors(init / "neuroskinning.safetensors");
+  content.metadata.erase("super_skeleton");
+  save_safetensors(init / "neuroskinning.safetensors", content);
+  bare.init = init;
+  bare.steps = 1;
+  const auto tune = [&] {
+    train::finetune(
+        data(), bare, [](const auto&, const auto&) {}, [] { return false; });
+  };
+  EXPECT_THAT(tune, testing::ThrowsMessage<Error>(AllOf(HasSubstr("neuroskinning.safetensors"), HasSubstr("super skeleton"))));
 }
 
 TEST_F(FinetuneData, general_characters_are_shown_too) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "osteon/base/error.h"
 #include "osteon/base/progress.h"
@@ -20,15 +22,32 @@ using nets::rignet::Network;
 struct Recipe {
   Task task;
   Network network;
-  double share;  // of the time
+  double share;  // of the time, where all are there
   double learning_rate;
   std::size_t batch_size;
 };
-// Time and batches as for the shipped weights (docs/training.md), a fifth of their learning rates.
-constexpr Recipe kRecipes[] = {
-    {Task::votes, Network::votes, 0.5, 4e-4, 3}, {Task::bind, Network::bind, 0.3, 6e-4, 4}, {Task::tree, Network::tree, 0.2, 3e-4, 8}};
+// Batches as for the shipped weights (docs/training.md), a fifth of their learning rates.
+constexpr Recipe kRecipes[] = {{Task::votes, Network::votes, 0.5, 4e-4, 3},
+                               {Task::bind, Network::bind, 0.25, 6e-4, 4},
+                               {Task::neuroskinning, Network::neuroskinning, 0.15, 6e-4, 4},
+                               {Task::tree, Network::tree, 0.1, 3e-4, 8}};
 
 fs::path file_of(const fs::path& folder, Network network) { return folder / fmt::format("{}.safetensors", name_of(network)); }
+
+// Those whose weights are there.
+std::vector<Recipe> recipes_for(const fs::path& init) {
+  std::vector<Recipe> present;
+  std::ranges::copy_if(kRecipes, std::back_inserter(present), [&](const Recipe& r) { return fs::exists(file_of(init, r.network)); });
+  const double sum = std::accumulate(present.begin(), present.end(), 0.0, [](double s, const Recipe& r) { return s + r.share; });
+  for (Recipe& recipe : present) recipe.share /= sum;
+  return present;
+}
+
+// What NeuroSkinning's weights read joints by, where they are among the recipes'.
+std::shared_ptr<const skin::SuperSkeleton> super_skeleton_of(const std::vector<Recipe>& recipes, const fs::path& init) {
+  const auto reads = std::ranges::find(recipes, Task::neuroskinning, &Recipe::task);
+  return reads == recipes.end() ? nullptr : std::make_shared<const skin::SuperSkeleton>(load_super_skeleton(file_of(init, reads->network)));
+}
 
 std::vector<Example> examples_of(std::vector<dataset::PreparedCharacter> characters, Task task) {
   if (is_about_pairs(task)) std::erase_if(characters, [](const auto& c) { return c.joints() < 2; });
@@ -50,11 +69,14 @@ TrainingSet training_set(const FinetuneData& data, Task task) {
   return set;
 }
 
-TrainOptions train_options(const Recipe& recipe, const FinetuneOptions& options, std::vector<double> sampling) {
+TrainOptions train_options(const Recipe& recipe, const FinetuneOptions& options, std::vector<double> sampling,
+                           std::shared_ptr<const skin::SuperSkeleton> super_skeleton) {
   TrainOptions out;
   out.task.run = options.run;
   out.task.run.norm = {.momentum = 0.01, .largest_stretch = 10.0, .largest_offset = 10.0};
   out.task.attention_weight = 0.02;  // that of `osteon-train rignet.votes`
+  if (recipe.task == Task::neuroskinning) out.task.batch.super_skeleton = std::move(super_skeleton);
+  if (recipe.task == Task::votes) out.augment.fold = 0.0f;  // one's own rigs are wanted as they are (docs/training.md)
   out.batch_size = recipe.batch_size;
   out.learning_rate = recipe.learning_rate;
   out.steps = options.steps;
@@ -89,6 +111,13 @@ void copy_weights(Network network, const FinetuneOptions& options, std::map<std:
   save_weights(file_of(options.output, network), load_weights(file_of(options.init, network), network), metadata);
 }
 
+std::map<std::string, std::string> metadata_of(const TrainOptions& training, const FinetuneOptions& options) {
+  auto metadata = options.metadata;
+  metadata["seed"] = std::to_string(options.seed);
+  if (const auto& super = training.task.batch.super_skeleton) metadata["super_skeleton"] = super->to_json();
+  return metadata;
+}
+
 // Trains and writes the file.
 void tune(const Recipe& recipe, const TrainingSet& set, const std::vector<Example>& validation, const TrainOptions& training,
           const FinetuneOptions& options, const std::function<void(const TrainReport&)>& report, const std::function<bool()>& stop) {
@@ -96,8 +125,7 @@ void tune(const Recipe& recipe, const TrainingSet& set, const std::vector<Exampl
   if (fs::exists(training.checkpoint)) trainer.resume();
   const TrainResult result = trainer.run(set.examples, validation, report, stop);
   if (result.ending == Ending::stopped) throw Cancelled();
-  auto metadata = options.metadata;
-  metadata["seed"] = std::to_string(options.seed);
+  auto metadata = metadata_of(training, options);
   metadata["steps"] = std::to_string(result.steps);
   metadata["seconds"] = fmt::format("{:.0f}", result.seconds);
   metadata["validation"] = nlohmann::json(result.validation).dump();
@@ -114,14 +142,16 @@ std::vector<FinetunedNetwork> finetune(const FinetuneData& data, const FinetuneO
                                        const std::function<void(const std::string& network, const TrainReport&)>& report,
                                        const std::function<bool()>& stop) {
   std::vector<FinetunedNetwork> results;
-  for (const Recipe& recipe : kRecipes) {
+  const std::vector<Recipe> recipes = recipes_for(options.init);
+  const auto super_skeleton = super_skeleton_of(recipes, options.init);
+  for (const Recipe& recipe : recipes) {
     const std::string name = name_of(recipe.network);
     const std::vector<Example> validation = examples_of(data.validation, recipe.task);
     const TrainingSet set = training_set(data, recipe.task);
-    const TrainOptions training = train_options(recipe, options, set.sampling);
+    const TrainOptions training = train_options(recipe, options, set.sampling, super_skeleton);
     const bool finished = fs::exists(file_of(options.output, recipe.network));
     if (set.examples.empty() || validation.empty()) {
-      copy_weights(recipe.network, options, options.metadata);
+      copy_weights(recipe.network, options, metadata_of(training, options));
       results.push_back({name, {}, {}});
       continue;
     }
@@ -130,11 +160,6 @@ std::vector<FinetunedNetwork> finetune(const FinetuneData& data, const FinetuneO
           recipe, set, validation, training, options, [&](const TrainReport& r) { report(name, r); }, stop);
     results.push_back(
         {name, figures_of(recipe, options.init, validation, training), figures_of(recipe, options.output, validation, training)});
-  }
-  // NeuroSkinning stays as it is: without it the weights would be the binding network's alone.
-  if (const fs::path second = file_of(options.init, Network::neuroskinning); fs::exists(second)) {
-    fs::copy_file(second, file_of(options.output, Network::neuroskinning), fs::copy_options::overwrite_existing);
-    results.push_back({name_of(Network::neuroskinning), {}, {}});
   }
   return results;
 }

@@ -18,8 +18,8 @@ struct FinetuneData {
 };
 
 struct FinetuneOptions {
-  std::filesystem::path init;    // folder with the weights to start from: {votes,bind,tree}.safetensors, perhaps neuroskinning.safetensors
-  std::filesystem::path output;  // folder where the tuned ones go; exists
+  std::filesystem::path init;         // folder with the weights to start from: {votes,bind,tree}.safetensors, perhaps neuroskinning
+  std::filesystem::path output;       // folder where the tuned ones go; exists
   std::filesystem::path checkpoints;  // folder where the state of a network in training is kept; exists
   double minutes = 0.0;               // of training, of all networks together ...
   std::int64_t steps = 0;             // ... or steps of each (0: by time)
@@ -36,10 +36,11 @@ struct FinetunedNetwork {
   std::map<std::string, double> before, after;
 };
 
-// Tunes the voting, the binding and the tree network in turn; of each the state with the smallest validation loss is kept,
-// never one worse than before. NeuroSkinning's weights are copied where `init` has them. A network whose file is in `output` is finished,
-// one with a checkpoint is gone on with, so that a stopped run goes on as if it had not been stopped (by steps; by time it depends on the
-// speed). Throws Cancelled, with a checkpoint written, when `stop` says so.
+// Tunes the voting, the binding, NeuroSkinning's (with the super skeleton that it has) and the tree network in turn, those that `init` has;
+// the second voting network is left out, as one that was shown twice as much votes better than two (docs/training.md). Of each the state
+// with the smallest validation loss is kept, never one worse than before. A network whose file is in `output`
+// is finished, one with a checkpoint is gone on with, so that a stopped run goes on as if it had not been stopped (by steps; by time it
+// depends on the speed). Throws Cancelled, with a checkpoint written, when `stop` says so.
 std::vector<FinetunedNetwork> finetune(const FinetuneData& data, const FinetuneOptions& options,
                                        const std::function<void(const std::string& network, const TrainReport&)>& report,
                                        const std::function<bool()>& stop);

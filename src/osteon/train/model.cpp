@@ -64,4 +64,11 @@ Parameters load_weights(const std::filesystem::path& path, nets::rignet::Network
   return parameters;
 }
 
+skin::SuperSkeleton load_super_skeleton(const std::filesystem::path& path) {
+  const auto metadata = load_safetensors(path).metadata;
+  const auto found = metadata.find("super_skeleton");
+  if (found == metadata.end()) throw Error("{}: has no super skeleton in its metadata", path.string());
+  return skin::SuperSkeleton::from_json(found->second);
+}
+
 }  // namespace osteon::train

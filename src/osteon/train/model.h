@@ -7,6 +7,7 @@
 
 #include "osteon/base/safetensors.h"
 #include "osteon/nets/dry_run.h"
+#include "osteon/skin/super_skeleton.h"
 #include "osteon/train/parameters.h"
 
 namespace osteon::train {
@@ -28,5 +29,8 @@ void save_weights(const std::filesystem::path& path, const Parameters& parameter
 
 // Throws Error that lists every name and shape in which the file and the network differ.
 Parameters load_weights(const std::filesystem::path& path, nets::rignet::Network network);
+
+// What NeuroSkinning's weights read joints by. Throws Error where the file's metadata have none.
+skin::SuperSkeleton load_super_skeleton(const std::filesystem::path& path);
 
 }  // namespace osteon::train

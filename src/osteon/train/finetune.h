@@ -37,10 +37,10 @@ struct FinetunedNetwork {
 };
 
 // Tunes the voting, the binding, NeuroSkinning's (with the super skeleton that it has) and the tree network in turn, those that `init` has;
-// the second voting network is left out, as one that was shown twice as much votes better than two (docs/training.md). Of each the state
-// with the smallest validation loss is kept, never one worse than before. A network whose file is in `output`
-// is finished, one with a checkpoint is gone on with, so that a stopped run goes on as if it had not been stopped (by steps; by time it
-// depends on the speed). Throws Cancelled, with a checkpoint written, when `stop` says so.
+// the second voting network is left out, as two tuned in the time of one vote no better (docs/training.md). Of each the state with the
+// smallest validation loss is kept, never one worse than before. A network whose file is in `output` is finished, one with a checkpoint is
+// gone on with, so that a stopped run goes on as if it had not been stopped (by steps; by time it depends on the speed).
+// Throws Cancelled, with a checkpoint written, when `stop` says so; Error where NeuroSkinning's weights have no super skeleton.
 std::vector<FinetunedNetwork> finetune(const FinetuneData& data, const FinetuneOptions& options,
                                        const std::function<void(const std::string& network, const TrainReport&)>& report,
                                        const std::function<bool()>& stop);

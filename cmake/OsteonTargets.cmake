@@ -22,6 +22,11 @@ function(osteon_library name)
   install(TARGETS osteon_${name} EXPORT osteonTargets)
 endfunction()
 
+# With OSTEON_UNITY a target whose files mostly include the same large headers (GoogleTest, Eigen, LibTorch) is compiled several files at a time.
+function(osteon_compile_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${OSTEON_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+endfunction()
+
 # A module's library and, for developers, its tests in tests/<module>/CMakeLists.txt.
 function(osteon_module name)
   if(EXISTS ${PROJECT_SOURCE_DIR}/src/osteon/${name}/CMakeLists.txt)
@@ -37,6 +42,7 @@ function(osteon_tests name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(osteon_${name}_tests ${ARG_SOURCES})
   target_link_libraries(osteon_${name}_tests PRIVATE ${ARG_LINK} osteon::test_support osteon_warnings GTest::gtest_main)
+  osteon_compile_together(osteon_${name}_tests)
   gtest_discover_tests(osteon_${name}_tests TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${name})
 endfunction()
 

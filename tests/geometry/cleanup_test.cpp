@@ -89,7 +89,7 @@ TEST(Clean, does_not_depend_on_the_number_of_threads) {
 }
 
 TEST(Clean, parts_that_touch_at_equal_vertices_stay_apart) {
-  const TriangleMesh stacked = shapes::merged(shapes::box({1, 1, 1}), test::moved(shapes::box({1, 1, 1}), {0, 1, 0}));
+  const TriangleMesh stacked = shapes::merged(shapes::box({1, 1, 1}), shapes::shifted(shapes::box({1, 1, 1}), {0, 1, 0}));
   const CleanMesh clean = geometry::clean(stacked);
   EXPECT_EQ(connected_components(clean.mesh).count, 2u);
   EXPECT_EQ(clean.mesh.positions.size(), 16u);
@@ -98,7 +98,7 @@ TEST(Clean, parts_that_touch_at_equal_vertices_stay_apart) {
 }
 
 TEST(Clean, open_parts_with_a_common_border_are_sewn) {
-  const TriangleMesh left = shapes::sheet(4, 4), both = shapes::merged(left, test::moved(left, {1, 0, 0}));
+  const TriangleMesh left = shapes::sheet(4, 4), both = shapes::merged(left, shapes::shifted(left, {1, 0, 0}));
   const CleanMesh clean = geometry::clean(both);
   EXPECT_EQ(connected_components(clean.mesh).count, 1u);
   EXPECT_EQ(clean.mesh.positions.size(), 45u);

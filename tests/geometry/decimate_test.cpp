@@ -121,7 +121,7 @@ TEST(Decimate, does_not_depend_on_the_unit) {
 }
 
 TEST(Decimate, does_not_depend_on_the_number_of_threads) {
-  const TriangleMesh mesh = clean(shapes::merged(shapes::icosphere(6), test::moved(shapes::capsule(0.2f, 3, 60, 30), {3, 0, 0}))).mesh;
+  const TriangleMesh mesh = clean(shapes::merged(shapes::icosphere(6), shapes::shifted(shapes::capsule(0.2f, 3, 60, 30), {3, 0, 0}))).mesh;
   const int before = threads();
   set_threads(1);
   const auto one = decimate(mesh, {.target_vertices = 500});

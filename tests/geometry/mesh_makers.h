@@ -13,10 +13,6 @@
 
 namespace osteon::test {
 
-inline TriangleMesh moved(const TriangleMesh& mesh, const Vec3f& by) {
-  return shapes::transformed(mesh, Transform(Eigen::Translation3f(by)));
-}
-
 inline TriangleMesh flipped(TriangleMesh mesh) {
   for (Triangle& t : mesh.faces) std::swap(t[1], t[2]);
   return mesh;
@@ -100,16 +96,16 @@ inline std::vector<std::pair<std::string, TriangleMesh>> awkward_meshes() {
   const TriangleMesh box = shapes::box({1, 1, 1}), sheet = shapes::sheet(6, 5);
   TriangleMesh pieces;
   for (int i = 0; i < 40; ++i)
-    pieces = shapes::merged(pieces, moved(shapes::icosphere(0, 0.02f), Vec3f(random.uniform(), random.uniform(), 0)));
+    pieces = shapes::merged(pieces, shapes::shifted(shapes::icosphere(0, 0.02f), Vec3f(random.uniform(), random.uniform(), 0)));
   return {{"sphere of separate faces", unshared(shapes::icosphere(3))},
           {"moebius strip", moebius_strip(24)},
           {"three pages", three_pages(6)},
-          {"two stacked boxes", shapes::merged(box, moved(box, {0, 1, 0}))},
-          {"two stacked boxes of separate faces", unshared(shapes::merged(box, moved(box, {0, 1, 0})))},
+          {"two stacked boxes", shapes::merged(box, shapes::shifted(box, {0, 1, 0}))},
+          {"two stacked boxes of separate faces", unshared(shapes::merged(box, shapes::shifted(box, {0, 1, 0})))},
           {"sheet from both sides", shapes::merged(sheet, flipped(sheet))},
           {"sphere twice", shapes::merged(shapes::icosphere(2), shapes::icosphere(2))},
           {"sphere and its reverse", shapes::merged(shapes::icosphere(2), flipped(shapes::icosphere(2)))},
-          {"spheres that touch in a point", shapes::merged(shapes::icosphere(2), moved(shapes::icosphere(2), {0, 2, 0}))},
+          {"spheres that touch in a point", shapes::merged(shapes::icosphere(2), shapes::shifted(shapes::icosphere(2), {0, 2, 0}))},
           {"sphere with fins, copies and a stray vertex", messy},
           {"many pieces", pieces}};
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "mesh_makers.h"
 #include "osteon/base/parallel.h"
 #include "osteon/mesh/shapes.h"
 #include "support/expect.h"
@@ -15,15 +16,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-TriangleMesh shifted(TriangleMesh mesh, const Vec3f& by) {
-  return shapes::transformed(std::move(mesh), Transform(Eigen::Translation3f(by)));
-}
-
-TriangleMesh turned_inside_out(TriangleMesh mesh) {
-  for (Triangle& t : mesh.faces) std::swap(t[1], t[2]);
-  return mesh;
-}
 
 // A sphere without symmetries, so that no two distances are equal.
 TriangleMesh potato(int subdivisions) {
@@ -120,21 +112,21 @@ TEST(GeodesicBalls, keep_the_nearest_when_full) {
 }
 
 TEST(GeodesicBalls, do_not_reach_across_a_gap_between_two_limbs) {
-  const TriangleMesh limbs = shapes::merged(shapes::icosphere(3, 0.25f), shifted(shapes::icosphere(3, 0.25f), {0.501f, 0, 0}));
+  const TriangleMesh limbs = shapes::merged(shapes::icosphere(3, 0.25f), shapes::shifted(shapes::icosphere(3, 0.25f), {0.501f, 0, 0}));
   const GeodesicBalls balls = geodesic_balls(limbs);
   for (std::size_t v = 0; v < 642; ++v)
     for (std::uint32_t u : balls.members.of(v)) EXPECT_LT(u, 642u);
 }
 
 TEST(GeodesicBalls, reach_from_cloth_to_the_body_under_it) {
-  const TriangleMesh body = shapes::sheet(30, 30), cloth = shifted(shapes::sheet(7, 7), {0.0f, 0.0f, 0.005f});
+  const TriangleMesh body = shapes::sheet(30, 30), cloth = shapes::shifted(shapes::sheet(7, 7), {0.0f, 0.0f, 0.005f});
   const GeodesicBalls balls = geodesic_balls(shapes::merged(body, cloth));
   for (std::size_t v = body.positions.size(); v < balls.members.size(); ++v)  // the cloth's vertices are farther apart than the radius
     EXPECT_TRUE(std::ranges::any_of(balls.members.of(v), [&](std::uint32_t u) { return u < body.positions.size(); }));
 }
 
 TEST(GeodesicBalls, do_not_reach_from_one_side_of_a_thin_part_to_the_other) {
-  const TriangleMesh front = shapes::sheet(30, 30), back = shifted(turned_inside_out(front), {0, 0, -0.005f});
+  const TriangleMesh front = shapes::sheet(30, 30), back = shapes::shifted(test::flipped(front), {0, 0, -0.005f});
   const GeodesicBalls balls = geodesic_balls(shapes::merged(front, back));
   for (std::size_t v = 0; v < front.positions.size(); ++v)
     for (std::uint32_t u : balls.members.of(v)) EXPECT_LT(u, front.positions.size());
@@ -163,7 +155,7 @@ TEST(GeodesicBalls, renumbering_vertices_renumbers_the_balls_and_nothing_else) {
 }
 
 TEST(GeodesicBalls, do_not_depend_on_the_number_of_threads) {
-  const TriangleMesh mesh = shapes::merged(potato(4), shifted(potato(3), {0.4f, 0, 0}));
+  const TriangleMesh mesh = shapes::merged(potato(4), shapes::shifted(potato(3), {0.4f, 0, 0}));
   const int before = threads();
   set_threads(1);
   const GeodesicBalls one = geodesic_balls(mesh);

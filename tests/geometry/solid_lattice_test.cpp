@@ -35,14 +35,15 @@ TEST(SolidLattice, a_sphere_has_its_volume_whichever_way_its_faces_look) {
 TEST(SolidLattice, no_step_leads_from_a_box_into_one_that_touches_it) {
   const TriangleMesh box = shapes::box({1, 1, 1});
   for (const float gap : {0.0f, 0.001f, 0.02f}) {
-    const TriangleMesh two = shapes::merged(test::moved(box, {-0.5f - 0.5f * gap, 0, 0}), test::moved(box, {0.5f + 0.5f * gap, 0, 0}));
+    const TriangleMesh two =
+        shapes::merged(shapes::shifted(box, {-0.5f - 0.5f * gap, 0, 0}), shapes::shifted(box, {0.5f + 0.5f * gap, 0, 0}));
     EXPECT_FALSE(crosses_the_middle(solid_lattice(two, 31))) << gap;
   }
 }
 
 TEST(SolidLattice, steps_lead_through_boxes_that_overlap) {
   const TriangleMesh box = shapes::box({1, 1, 1});
-  const TriangleMesh two = shapes::merged(test::moved(box, {-0.4f, 0, 0}), test::moved(box, {0.4f, 0, 0}));
+  const TriangleMesh two = shapes::merged(shapes::shifted(box, {-0.4f, 0, 0}), shapes::shifted(box, {0.4f, 0, 0}));
   EXPECT_TRUE(crosses_the_middle(solid_lattice(two, 32)));
 }
 

@@ -12,17 +12,15 @@
 namespace osteon::geometry {
 namespace {
 
-TriangleMesh moved(TriangleMesh mesh, const Transform& transform) { return shapes::transformed(std::move(mesh), transform); }
-TriangleMesh shifted(TriangleMesh mesh, const Vec3f& by) { return moved(std::move(mesh), Transform(Eigen::Translation3f(by))); }
-
 // A trunk with a head in front, arms raised forward and legs: symmetric about x = 0 and no other plane.
 TriangleMesh doll() {
-  TriangleMesh mesh = shapes::merged(shapes::capsule(0.12f, 0.4f), shifted(shapes::icosphere(2, 0.12f), {0, 0.6f, 0.05f}));
+  TriangleMesh mesh = shapes::merged(shapes::capsule(0.12f, 0.4f), shapes::shifted(shapes::icosphere(2, 0.12f), {0, 0.6f, 0.05f}));
   for (float side : {1.0f, -1.0f}) {
     const Transform arm(Eigen::Translation3f(0.12f * side, 0.38f, 0) * Eigen::AngleAxisf(-1.2f * side, Vec3f::UnitZ()) *
                         Eigen::AngleAxisf(0.3f, Vec3f::UnitX()));
     const Transform leg(Eigen::Translation3f(0.07f * side, -0.5f, 0.02f));
-    mesh = shapes::merged(shapes::merged(mesh, moved(shapes::capsule(0.04f, 0.4f), arm)), moved(shapes::capsule(0.05f, 0.4f), leg));
+    mesh = shapes::merged(shapes::merged(mesh, shapes::transformed(shapes::capsule(0.04f, 0.4f), arm)),
+                          shapes::transformed(shapes::capsule(0.05f, 0.4f), leg));
   }
   return mesh;
 }
@@ -34,7 +32,7 @@ float angle_between(const Vec3f& a, const Vec3f& b) {
 }
 
 TEST(Symmetry, of_an_upright_doll_is_exactly_x) {
-  const auto plane = symmetry_plane(shifted(doll(), {0.3f, 1, 2}));
+  const auto plane = symmetry_plane(shapes::shifted(doll(), {0.3f, 1, 2}));
   ASSERT_TRUE(plane);
   EXPECT_EQ(plane->normal, Vec3f::UnitX());
   EXPECT_NEAR(plane->offset, 0.3f, 2e-3f);
@@ -46,7 +44,7 @@ TEST(Symmetry, is_found_in_any_position_and_size) {
     const Quatf turn = random_turn(random);
     const Vec3f shift(random.normal(), random.normal(), random.normal());
     const float scale = std::exp(random.normal());
-    const auto plane = symmetry_plane(moved(doll(), Transform(Eigen::Translation3f(shift) * turn * Eigen::Scaling(scale))));
+    const auto plane = symmetry_plane(shapes::transformed(doll(), Transform(Eigen::Translation3f(shift) * turn * Eigen::Scaling(scale))));
     ASSERT_TRUE(plane);
     EXPECT_LT(angle_between(plane->normal, turn * Vec3f::UnitX()), 1.0f);
     EXPECT_LT(std::abs(plane->signed_distance(shift)), 0.01f * scale);
@@ -56,11 +54,11 @@ TEST(Symmetry, is_found_in_any_position_and_size) {
 
 TEST(Symmetry, of_a_shape_with_equal_principal_moments_is_found) {
   // A cube with a ball on one edge: the cube's moments are all equal, so the principal axes say little.
-  const TriangleMesh mesh = shapes::merged(shapes::box({1, 1, 1}), shifted(shapes::icosphere(2, 0.2f), {0.5f, 0.25f, 0.5f}));
+  const TriangleMesh mesh = shapes::merged(shapes::box({1, 1, 1}), shapes::shifted(shapes::icosphere(2, 0.2f), {0.5f, 0.25f, 0.5f}));
   Random random(4);
   for (int i = 0; i < 10; ++i) {
     const Quatf turn = random_turn(random);
-    const auto plane = symmetry_plane(moved(mesh, Transform(turn)));
+    const auto plane = symmetry_plane(shapes::transformed(mesh, Transform(turn)));
     ASSERT_TRUE(plane);
     EXPECT_LT(angle_between(plane->normal, turn * Vec3f(1, 0, -1).normalized()), 1.0f);
   }
@@ -76,7 +74,7 @@ TEST(Symmetry, is_x_where_several_planes_are_equally_good) {
 }
 
 TEST(Symmetry, survives_a_small_one_sided_part) {
-  const auto plane = symmetry_plane(shapes::merged(doll(), shifted(shapes::icosphere(1, 0.03f), {0.15f, 0.3f, 0.1f})));
+  const auto plane = symmetry_plane(shapes::merged(doll(), shapes::shifted(shapes::icosphere(1, 0.03f), {0.15f, 0.3f, 0.1f})));
   ASSERT_TRUE(plane);
   EXPECT_LT(angle_between(plane->normal, Vec3f::UnitX()), 1.0f);
 }

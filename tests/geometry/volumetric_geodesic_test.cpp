@@ -13,10 +13,6 @@
 namespace osteon::geometry {
 namespace {
 
-TriangleMesh shifted(TriangleMesh mesh, const Vec3f& by) {
-  return shapes::transformed(std::move(mesh), Transform(Eigen::Translation3f(by)));
-}
-
 float euclidean(const Segment& s, const Vec3f& p) {
   const Vec3f d = s.b - s.a;
   const float t = d.squaredNorm() > 0.0f ? std::clamp((p - s.a).dot(d) / d.squaredNorm(), 0.0f, 1.0f) : 0.0f;
@@ -66,7 +62,7 @@ TEST(VolumetricGeodesic, does_not_leak_through_a_gap_thinner_than_a_voxel) {
 
 TEST(VolumetricGeodesic, passes_between_two_cylinders_that_touch_at_one_place_only) {
   const TriangleMesh limb = shapes::capsule(0.1f, 0.8f, 24, 12);
-  const TriangleMesh both = shapes::merged(limb, shifted(limb, {0.2f, 0, 0}));
+  const TriangleMesh both = shapes::merged(limb, shapes::shifted(limb, {0.2f, 0, 0}));
   const Segment bone{{0, 0, 0}, {0, 0.8f, 0}};
   const auto d = distances(both, bone);
   const auto all = both.positions.ids();
@@ -88,7 +84,7 @@ TEST(VolumetricGeodesic, passes_from_one_part_into_another_that_it_overlaps) {
   //  -----------(   )---
   const TriangleMesh body = shapes::capsule(0.15f, 0.6f, 24, 12);
   Transform turn(Eigen::AngleAxisf(-0.5f * std::numbers::pi_v<float>, Vec3f::UnitZ()));  // +y becomes +x
-  const TriangleMesh sleeve = shifted(shapes::transformed(shapes::capsule(0.05f, 0.4f, 24, 12), turn), {0.05f, 0.3f, 0});
+  const TriangleMesh sleeve = shapes::shifted(shapes::transformed(shapes::capsule(0.05f, 0.4f, 24, 12), turn), {0.05f, 0.3f, 0});
   const TriangleMesh both = shapes::merged(body, sleeve);
   const Segment spine{{0, 0, 0}, {0, 0.6f, 0}};
   const auto d = distances(both, spine);
@@ -97,7 +93,7 @@ TEST(VolumetricGeodesic, passes_from_one_part_into_another_that_it_overlaps) {
 }
 
 TEST(VolumetricGeodesic, of_a_piece_that_floats_leads_over_the_shortest_gap) {
-  const TriangleMesh two = shapes::merged(shapes::icosphere(3, 0.1f), shifted(shapes::icosphere(3, 0.1f), {0.8f, 0, 0}));
+  const TriangleMesh two = shapes::merged(shapes::icosphere(3, 0.1f), shapes::shifted(shapes::icosphere(3, 0.1f), {0.8f, 0, 0}));
   const auto d = distances(two, {{0, 0, 0}, {0, 0, 0}});
   for (VertexId v : two.positions.ids()) {
     const float x = two.positions[v].x();

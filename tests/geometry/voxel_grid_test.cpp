@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geometry/tube.h"
+#include "mesh_makers.h"
 #include "osteon/base/parallel.h"
 #include "osteon/base/random.h"
 #include "osteon/mesh/shapes.h"
@@ -12,15 +13,6 @@
 
 namespace osteon::geometry {
 namespace {
-
-TriangleMesh shifted(TriangleMesh mesh, const Vec3f& by) {
-  return shapes::transformed(std::move(mesh), Transform(Eigen::Translation3f(by)));
-}
-
-TriangleMesh turned_inside_out(TriangleMesh mesh) {
-  for (Triangle& t : mesh.faces) std::swap(t[1], t[2]);
-  return mesh;
-}
 
 double volume(const VoxelGrid& grid, Voxel kind) {
   return static_cast<double>(std::ranges::count(grid.voxels, kind)) * std::pow(static_cast<double>(grid.cell), 3.0);
@@ -95,7 +87,7 @@ TEST(VoxelGrid, inside_does_not_need_a_closed_mesh) {
 }
 
 TEST(VoxelGrid, overlapping_parts_stay_solid) {
-  const VoxelGrid grid = voxelize(shapes::merged(shapes::icosphere(3), shifted(shapes::icosphere(3), {0.7f, 0, 0})));
+  const VoxelGrid grid = voxelize(shapes::merged(shapes::icosphere(3), shapes::shifted(shapes::icosphere(3), {0.7f, 0, 0})));
   EXPECT_EQ(grid.at({0.35f, 0.02f, 0.01f}), Voxel::Interior);  // in both: parity would say outside
   EXPECT_EQ(grid.at({-0.5f, 0, 0}), Voxel::Interior);
 }
@@ -103,14 +95,14 @@ TEST(VoxelGrid, overlapping_parts_stay_solid) {
 TEST(VoxelGrid, the_gap_between_two_equal_boxes_is_outside) {
   for (const Vec3f& size : {Vec3f(0.2f, 1, 0.2f), Vec3f(0.4f, 0.4f, 0.4f), Vec3f(0.3f, 0.3f, 1)}) {
     const TriangleMesh box = shapes::box(size);
-    const VoxelGrid grid = voxelize(shapes::merged(shifted(box, {-0.3f, 0, 0}), shifted(box, {0.3f, 0, 0})));
+    const VoxelGrid grid = voxelize(shapes::merged(shapes::shifted(box, {-0.3f, 0, 0}), shapes::shifted(box, {0.3f, 0, 0})));
     EXPECT_EQ(grid.at(Vec3f::Zero()), Voxel::Outside) << size.transpose();
     EXPECT_EQ(grid.at({-0.3f, 0, 0}), Voxel::Interior) << size.transpose();
   }
 }
 
 TEST(VoxelGrid, pieces_that_face_inwards_are_solid_too) {
-  const VoxelGrid grid = voxelize(turned_inside_out(shapes::icosphere(3)));
+  const VoxelGrid grid = voxelize(test::flipped(shapes::icosphere(3)));
   EXPECT_EQ(grid.at({0.2f, 0.1f, 0}), Voxel::Interior);
   EXPECT_FALSE(grid.inside({0, 1.05f, 0}));
 }
@@ -122,7 +114,7 @@ TEST(VoxelGrid, a_single_sheet_has_no_inside) {
 }
 
 TEST(VoxelGrid, does_not_depend_on_the_number_of_threads_or_the_order_of_faces) {
-  TriangleMesh mesh = shapes::merged(shapes::icosphere(3), shifted(shapes::capsule(0.2f, 2.0f), {0.3f, 0, 0.1f}));
+  TriangleMesh mesh = shapes::merged(shapes::icosphere(3), shapes::shifted(shapes::capsule(0.2f, 2.0f), {0.3f, 0, 0.1f}));
   const int before = threads();
   set_threads(1);
   const VoxelGrid one = voxelize(mesh);

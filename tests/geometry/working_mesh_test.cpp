@@ -30,7 +30,7 @@ void expect_same_bytes(const TriangleMesh& a, const TriangleMesh& b) {
 }
 
 TEST(Normalization, puts_the_longest_side_to_one_and_the_feet_to_zero) {
-  const TriangleMesh box = test::moved(shapes::box({1, 4, 2}), {7, 5, -3});
+  const TriangleMesh box = shapes::shifted(shapes::box({1, 4, 2}), {7, 5, -3});
   const Normalization n = normalization_of(box);
   EXPECT_VEC3_NEAR(n.apply({7, 3, -3}), Vec3f(0, 0, 0), 1e-6f);
   EXPECT_VEC3_NEAR(n.apply({7.5f, 7, -2}), Vec3f(0.125f, 1, 0.25f), 1e-6f);
@@ -68,7 +68,7 @@ TEST(WorkingMesh, does_not_depend_on_the_order_of_vertices_and_faces_nor_on_thre
 }
 
 TEST(WorkingMesh, long_triangles_get_vertices_beside_a_fine_part) {
-  const TriangleMesh mesh = shapes::merged(test::moved(shapes::icosphere(5, 0.1f), {0, 1.1f, 0}), shapes::box({0.5f, 2, 0.5f}));
+  const TriangleMesh mesh = shapes::merged(shapes::shifted(shapes::icosphere(5, 0.1f), {0, 1.1f, 0}), shapes::box({0.5f, 2, 0.5f}));
   const WorkingMesh working = make_working_mesh(mesh);
   std::size_t in_box = 0;
   for (const Vec3f& p : working.mesh.positions) in_box += working.normalization.undo(p).y() < 0.99f;
@@ -137,7 +137,7 @@ TEST(CarryBack, weights_are_convex_and_points_are_near) {
 TEST(CarryBack, parts_that_touch_do_not_mix) {
   const TriangleMesh part = shapes::icosphere(4);
   for (float gap : {0.0f, 1e-4f, -0.02f}) {  // touching, nearly touching, overlapping
-    const TriangleMesh both = shapes::merged(part, test::moved(part, {0, 2 + gap, 0}));
+    const TriangleMesh both = shapes::merged(part, shapes::shifted(part, {0, 2 + gap, 0}));
     const WorkingMesh working = make_working_mesh(both);
     const Components parts = connected_components(working.mesh);
     ASSERT_EQ(parts.count, 2u);

@@ -17,8 +17,6 @@ Asset load_text(const std::string& name, const std::string& content, const LoadO
   return load(write(folder / name, content), options);
 }
 
-constexpr VertexId v0{0}, v1{1}, v2{2}, v3{3};
-
 // OBJ -----------------------------------------------------------------------------------------------------------------------------------
 
 TEST(Obj, polygons_groups_and_comments) {
@@ -26,13 +24,13 @@ TEST(Obj, polygons_groups_and_comments) {
       load_text("a.obj", "# c\no thing\ng left\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0 # last\ns off\nf 1 2 3 4\ng\nl 1 2\nf 3 2 1\n");
   EXPECT_EQ(asset.mesh.positions.size(), 4u);
   ASSERT_EQ(asset.mesh.faces.size(), 3u);
-  EXPECT_EQ(asset.mesh.faces[FaceId{2}], (Triangle{v2, v1, v0}));
+  EXPECT_EQ(asset.mesh.faces[FaceId{2}], (Triangle{VertexId{2}, VertexId{1}, VertexId{0}}));
   EXPECT_THAT(asset.repairs, testing::IsEmpty());
 }
 
 TEST(Obj, negative_indices_count_back_from_the_face) {
   const Asset asset = load_text("a.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\n");
-  EXPECT_EQ(asset.mesh.faces[FaceId{0}], (Triangle{v1, v2, v3}));
+  EXPECT_EQ(asset.mesh.faces[FaceId{0}], (Triangle{VertexId{1}, VertexId{2}, VertexId{3}}));
 }
 
 TEST(Obj, faces_may_stand_before_their_vertices) {
@@ -41,7 +39,7 @@ TEST(Obj, faces_may_stand_before_their_vertices) {
 
 TEST(Obj, line_ends_continuations_tabs_and_odd_numbers) {
   const Asset asset = load_text("a.obj", "\xEF\xBB\xBFv\t+0 0.0e0 -0\r\nv 1e0 0 0\rv 0 \\\n1 1e-60\r\nf  1//  2 3");
-  EXPECT_VEC3_NEAR(asset.mesh.positions[v2], Vec3f(0, 1, 0), 0.0f);
+  EXPECT_VEC3_NEAR(asset.mesh.positions[VertexId{2}], Vec3f(0, 1, 0), 0.0f);
   EXPECT_EQ(asset.mesh.faces.size(), 1u);
 }
 
@@ -50,7 +48,7 @@ TEST(Obj, utf16_is_read_too) {
   std::string wide = "\xFF\xFE";
   for (const char c : text) wide += {c, '\0'};
   const Asset asset = load_text("a.obj", wide);
-  EXPECT_EQ(asset.mesh.positions[v2], Vec3f(0, 1, 0));
+  EXPECT_EQ(asset.mesh.positions[VertexId{2}], Vec3f(0, 1, 0));
   EXPECT_EQ(asset.source->appearance->materials[0].name, "\xC3\xBC");
 }
 
@@ -129,9 +127,9 @@ TEST(Ply, both_byte_orders_read_the_same) {
   for (const bool big : {false, true}) {
     const Asset asset = load_text("a.ply", binary_ply(big));
     ASSERT_EQ(asset.mesh.positions.size(), 4u);
-    EXPECT_EQ(asset.mesh.positions[v3], Vec3f(0, 1, 5));
+    EXPECT_EQ(asset.mesh.positions[VertexId{3}], Vec3f(0, 1, 5));
     ASSERT_EQ(asset.mesh.faces.size(), 3u);
-    EXPECT_EQ(asset.mesh.faces[FaceId{2}], (Triangle{v3, v2, v1}));
+    EXPECT_EQ(asset.mesh.faces[FaceId{2}], (Triangle{VertexId{3}, VertexId{2}, VertexId{1}}));
     EXPECT_EQ(asset.source->appearance->colours[3], Eigen::Vector4f(1, 0, 0, 1));
     EXPECT_THAT(asset.repairs, testing::IsEmpty());
   }
@@ -154,8 +152,8 @@ TEST(Ply, strips_turn_every_other_triangle) {
                                 "tristrips 1\nproperty list int "
                                 "int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 3\n");
   ASSERT_EQ(asset.mesh.faces.size(), 3u);
-  EXPECT_EQ(asset.mesh.faces[FaceId{1}], (Triangle{v2, v1, v3}));
-  EXPECT_EQ(asset.mesh.faces[FaceId{2}], (Triangle{v0, v1, v3}));
+  EXPECT_EQ(asset.mesh.faces[FaceId{1}], (Triangle{VertexId{2}, VertexId{1}, VertexId{3}}));
+  EXPECT_EQ(asset.mesh.faces[FaceId{2}], (Triangle{VertexId{0}, VertexId{1}, VertexId{3}}));
 }
 
 // STL -----------------------------------------------------------------------------------------------------------------------------------
@@ -169,14 +167,15 @@ std::string binary_stl(const std::string& title) {
 }
 
 TEST(Stl, binary_even_if_it_begins_with_solid) {
-  for (const char* title : {"binary", "solid facet"}) EXPECT_EQ(load_text("a.stl", binary_stl(title)).mesh.positions[v2], Vec3f(0, 2, 0));
+  for (const char* title : {"binary", "solid facet"})
+    EXPECT_EQ(load_text("a.stl", binary_stl(title)).mesh.positions[VertexId{2}], Vec3f(0, 2, 0));
 }
 
 TEST(Stl, ascii) {
   const Asset asset = load_text("a.stl",
                                 "solid x\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 2.5 0\n  "
                                 "endloop\n endfacet\nendsolid x\n");
-  EXPECT_EQ(asset.mesh.positions[v2], Vec3f(0, 2.5f, 0));
+  EXPECT_EQ(asset.mesh.positions[VertexId{2}], Vec3f(0, 2.5f, 0));
   EXPECT_EQ(asset.mesh.faces.size(), 1u);
 }
 
@@ -191,7 +190,7 @@ TEST(RigText, lines_in_any_order_with_the_obj_beside_it) {
   write(folder / "hero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const Asset asset = load(write(folder / "hero_rig.txt", kRig));
   EXPECT_EQ(asset.skeleton->names.raw(), (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ((*asset.weights)[v1][1], (Influence{JointId{1}, 0.25f}));
+  EXPECT_EQ((*asset.weights)[VertexId{1}][1], (Influence{JointId{1}, 0.25f}));
   EXPECT_VEC3_NEAR(asset.skeleton->rest_orientations[JointId{0}] * Vec3f::UnitY(), Vec3f(0, 1, -0.5f).normalized(), 1e-6f);
 }
 

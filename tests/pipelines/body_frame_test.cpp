@@ -10,11 +10,10 @@ namespace {
 
 const Vec3f kSides[] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}};
 
-TriangleMesh shifted(const TriangleMesh& mesh, const Vec3f& by) { return shapes::transformed(mesh, Transform(Eigen::Translation3f(by))); }
-
 // A trunk on y = 0 with a finely modelled face at +z.
 TriangleMesh trunk() {
-  return shapes::merged(shifted(shapes::box({0.5f, 1, 0.3f}), {0, 0.5f, 0}), shifted(shapes::icosphere(2, 0.1f), {0, 0.9f, 0.15f}));
+  return shapes::merged(shapes::shifted(shapes::box({0.5f, 1, 0.3f}), {0, 0.5f, 0}),
+                        shapes::shifted(shapes::icosphere(2, 0.1f), {0, 0.9f, 0.15f}));
 }
 
 TEST(BodyFrame, is_the_same_for_a_mesh_turned_by_right_angles) {
@@ -39,7 +38,7 @@ TEST(BodyFrame, has_y_up_where_that_is_asked_for) {
 
 TEST(BodyFrame, of_a_shape_alike_before_and_behind_has_the_widest_side_along_x_and_the_front_of_the_file) {
   for (const Vec3f& side : kSides) {
-    const TriangleMesh mesh = turned(shifted(shapes::box({0.5f, 1, 0.3f}), {0, 0.5f, 0}), geometry::turn_to_front(side));
+    const TriangleMesh mesh = turned(shapes::shifted(shapes::box({0.5f, 1, 0.3f}), {0, 0.5f, 0}), geometry::turn_to_front(side));
     const BodyFrame frame = body_frame(mesh, Up::automatic);
     EXPECT_FLOAT_EQ(bounds(turned(mesh, frame.turn)).sizes().x(), 0.5f);
     EXPECT_EQ(frame.is_seen_from_behind, (frame.turn * Vec3f::UnitZ()).z() < -0.5f);

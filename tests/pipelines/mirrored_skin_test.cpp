@@ -8,7 +8,7 @@
 namespace osteon::pipelines {
 namespace {
 
-const Plane kMiddle{Vec3f::UnitX(), 0.0f};
+const Plane kMirror{Vec3f::UnitX(), 0.0f};
 
 // hips with two legs of two joints each.
 Skeleton legs() {
@@ -24,16 +24,16 @@ const PerJoint<JointId> kPartners{JointId{0}, JointId{3}, JointId{4}, JointId{1}
 
 TEST(MirroredSkin, partners_of_joints_are_their_images) {
   const Skeleton s = legs();
-  EXPECT_EQ(mirror_partners(s, s.rest_positions, kMiddle), kPartners);
+  EXPECT_EQ(mirror_partners(s, s.rest_positions, kMirror), kPartners);
 }
 
 TEST(MirroredSkin, a_skeleton_with_something_one_sided_has_no_partners) {
   Skeleton sword = legs();
   sword.add("sword", JointId{4}, {-0.5f, 0.1f, 0});
-  EXPECT_FALSE(mirror_partners(sword, sword.rest_positions, kMiddle));
+  EXPECT_FALSE(mirror_partners(sword, sword.rest_positions, kMirror));
   Skeleton crossed = legs();
   crossed.parents[JointId{4}] = JointId{1};  // the right foot hangs on the left leg
-  EXPECT_FALSE(mirror_partners(crossed, crossed.rest_positions, kMiddle));
+  EXPECT_FALSE(mirror_partners(crossed, crossed.rest_positions, kMirror));
 }
 
 TEST(MirroredSkin, the_mean_with_the_image_is_its_own_image) {
@@ -41,8 +41,8 @@ TEST(MirroredSkin, the_mean_with_the_image_is_its_own_image) {
   Random random(2);
   Matrix weights(8, 5);
   for (float& w : weights.reshaped()) w = random.uniform();
-  const Matrix mean = mean_with_image(weights, mesh, kMiddle, kPartners);
-  EXPECT_LT((mean_with_image(mean, mesh, kMiddle, kPartners) - mean).cwiseAbs().maxCoeff(), 1e-6f);
+  const Matrix mean = mean_with_image(weights, mesh, kMirror, kPartners);
+  EXPECT_LT((mean_with_image(mean, mesh, kMirror, kPartners) - mean).cwiseAbs().maxCoeff(), 1e-6f);
   EXPECT_LT((mean.rowwise().sum().sum() - weights.sum()), 1e-4f);
   const Matrix far = mean_with_image(weights, mesh, {Vec3f::UnitX(), 1.0f}, kPartners);
   EXPECT_EQ(far, weights);

@@ -10,6 +10,7 @@
 #include "osteon/skin/super_skeleton.h"
 #include "osteon/synth/character.h"
 #include "osteon/synth/garments.h"
+#include "pipelines/biped.h"
 #include "pipelines/untrained.h"
 #include "skin/heaps.h"
 #include "skin/touching.h"
@@ -33,8 +34,6 @@ infer::NeuroskinningModel untrained(Network network, LastLayer last = LastLayer:
   return infer::NeuroskinningModel::load(folder.path());
 }
 
-Rig biped() { return synth::make_character(synth::Kind::Biped, 3, {64, synth::Finish::Smooth}); }
-
 void expect_exact(const SkinWeights& weights, const TriangleMesh& mesh, const Skeleton& skeleton) {
   test::expect_exact(weights, mesh, skeleton);
   EXPECT_LE(weights.max_influences(), 4u);
@@ -57,7 +56,7 @@ TEST_P(Neuroskinning, binds_every_vertex_of_any_heap_of_pieces_to_any_skeleton) 
 
 TEST_P(Neuroskinning, binds_skeletons_of_more_joints_than_slots) {
   const auto model = untrained(GetParam(), LastLayer::random, 20);
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   Skeleton many = rig.skeleton;
   while (many.size() < 163) {
     const auto parent = static_cast<JointId>(many.size() % rig.skeleton.size());
@@ -69,7 +68,7 @@ TEST_P(Neuroskinning, binds_skeletons_of_more_joints_than_slots) {
 
 TEST_P(Neuroskinning, is_the_same_for_any_order_of_vertices_and_any_number_of_threads) {
   const auto model = untrained(GetParam(), LastLayer::random);
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   const SkinWeights weights = neuroskinning_weights(rig.mesh, rig.skeleton, model).weights;
   {
     const test::ScopedThreads one(1);
@@ -100,7 +99,7 @@ TEST(NeuroskinningOurs, a_network_that_knows_nothing_keeps_touching_parts_apart)
 
 TEST(NeuroskinningOurs, of_joints_at_one_place_the_one_whose_bone_it_is_gets_the_weights) {
   const auto model = untrained(Network::neuroskinning);
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   Skeleton stacked = rig.skeleton;
   for (JointId j : rig.skeleton.names.ids()) stacked.add(rig.skeleton.names[j] + "_ctrl", j, rig.skeleton.rest_positions[j]);
   EXPECT_EQ(neuroskinning_weights(rig.mesh, stacked, model).weights, neuroskinning_weights(rig.mesh, rig.skeleton, model).weights);

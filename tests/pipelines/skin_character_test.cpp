@@ -8,17 +8,15 @@
 #include "osteon/mesh/shapes.h"
 #include "osteon/pipelines/skeleton_fit.h"
 #include "osteon/pipelines/skin_quality.h"
-#include "osteon/synth/character.h"
+#include "pipelines/biped.h"
 #include "skin/heaps.h"
 #include "support/expect.h"
 
 namespace osteon::pipelines {
 namespace {
 
-Rig biped() { return synth::make_character(synth::Kind::Biped, 3, {64, synth::Finish::Smooth}); }
-
 TEST(SkinCharacter, mirror_makes_the_halves_equal_bit_by_bit) {
-  Rig rig = biped();
+  Rig rig = test::biped();
   const auto mirror = mirror_map(rig.mesh, rig.skeleton);
   if (!mirror) GTEST_SKIP() << "this character wears something on one side";
   SkinCharacterOptions options;
@@ -41,7 +39,7 @@ TEST(SkinCharacter, mirror_makes_the_halves_equal_bit_by_bit) {
 }
 
 TEST(SkinCharacter, mirror_says_so_where_nothing_is_symmetric) {
-  Rig rig = biped();
+  Rig rig = test::biped();
   rig.skeleton.rest_positions[JointId{1}].x() += 0.2f;
   SkinCharacterOptions options;
   options.bind.resolution = 32;
@@ -52,7 +50,7 @@ TEST(SkinCharacter, mirror_says_so_where_nothing_is_symmetric) {
 // Beads along an arm from its joint on: where weights of two bones meet, at least one of them would bend.
 TEST(SkinCharacter, by_networks_a_small_island_follows_one_joint_unless_it_may_deform) {
   static const auto models = infer::RignetModels::load();
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   const auto bone_list = bones(rig.skeleton);
   const auto arm = std::ranges::max_element(bone_list, {}, [](const Bone& b) { return b.end ? std::abs(b.segment.b.x()) : 0.0f; });
   const std::size_t body = rig.mesh.positions.size();
@@ -86,7 +84,7 @@ TEST(SkinCharacter, by_networks_a_small_island_follows_one_joint_unless_it_may_d
 
 TEST(SkinCharacter, networks_smooth_and_prune_as_they_are_told) {
   static const auto models = infer::RignetModels::load();
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   const auto influences = [&](SkinCharacterOptions options) {
     const SkinWeights weights = skin_character(rig.mesh, rig.skeleton, options).weights;
     std::size_t sum = 0;
@@ -109,7 +107,7 @@ TEST(SkinCharacter, networks_smooth_and_prune_as_they_are_told) {
 
 TEST(SkinCharacter, networks_heard_together_differ_from_either_and_are_valid) {
   static const auto models = infer::RignetModels::load();
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   ASSERT_NE(models.neuroskinning(), nullptr);
   const SkinWeights one = skin_character(rig.mesh, rig.skeleton, {.rignet = &models}).weights,
                     other = skin_character(rig.mesh, rig.skeleton, {.neuroskinning = models.neuroskinning()}).weights,
@@ -134,7 +132,7 @@ TEST(SkinCharacter, by_networks_every_vertex_of_a_heap_of_pieces_has_weights) {
 }
 
 TEST(SkinQuality, a_skin_by_its_own_bones_leaks_less_than_one_by_any) {
-  Rig rig = biped();
+  Rig rig = test::biped();
   const SkinQuality good = skin_quality(rig);
   EXPECT_EQ(good.unweighted, 0u);
   EXPECT_LT(good.largest_sum_error, 1e-6);
@@ -153,14 +151,14 @@ TEST(SkinQuality, a_skin_by_its_own_bones_leaks_less_than_one_by_any) {
 }
 
 TEST(SkeletonFit, leaves_a_skeleton_that_fits_alone) {
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   const SkeletonFit fit = fit_skeleton(rig.skeleton, rig.mesh);
   EXPECT_TRUE(fit.to_body.matrix().isIdentity(0.0));
   EXPECT_EQ(fit.note, "");
 }
 
 TEST(SkeletonFit, finds_centimetres_and_the_other_up_axis) {
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   const Eigen::Affine3d mistake(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()) * Eigen::Scaling(100.0));
   const SkeletonFit fit = fit_skeleton(transformed(rig.skeleton, mistake), rig.mesh);
   EXPECT_TRUE((fit.to_body * mistake).matrix().isApprox(Eigen::Matrix4d::Identity(), 1e-6)) << fit.note;
@@ -168,7 +166,7 @@ TEST(SkeletonFit, finds_centimetres_and_the_other_up_axis) {
 }
 
 TEST(SkeletonFit, scales_any_other_size_to_the_body) {
-  const Rig rig = biped();
+  const Rig rig = test::biped();
   const Skeleton other = transformed(rig.skeleton, Eigen::Affine3d(Eigen::Translation3d(7, 3, 0) * Eigen::Scaling(4.3)));
   const SkeletonFit fit = fit_skeleton(other, rig.mesh);
   const Skeleton fitted = transformed(other, fit.to_body);

@@ -87,7 +87,7 @@ TEST(Bind, a_vertex_beside_the_joint_belongs_half_to_each_bone) {
 
 TEST(Bind, a_small_island_follows_one_joint_unless_it_may_deform) {
   const TriangleMesh arm = test::tube({{0, 0, 0}, {0, 0.25f, 0}, {0, 0.5f, 0}, {0, 0.75f, 0}, {0, 1, 0}}, 0.1f);
-  const TriangleMesh button = test::moved(shapes::icosphere(1, 0.04f), {0.1f, 0.53f, 0});
+  const TriangleMesh button = shapes::shifted(shapes::icosphere(1, 0.04f), {0.1f, 0.53f, 0});
   const TriangleMesh mesh = shapes::merged(arm, button);
   const std::size_t first = arm.positions.size();
   const auto joints_of_button = [&](const SkinWeights& weights) {

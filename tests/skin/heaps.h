@@ -21,7 +21,7 @@ inline Vec3f anywhere(Random& random, float size) {
 
 inline TriangleMesh ball(Random& random) {
   const TriangleMesh sphere = shapes::icosphere(1, random.uniform(0.05f, 0.35f));
-  return moved(sphere, anywhere(random, 0.4f));
+  return shapes::shifted(sphere, anywhere(random, 0.4f));
 }
 
 // Open, with faces that look both ways, points used twice, faces through one another.
@@ -29,7 +29,7 @@ inline TriangleMesh heap_of_pieces(Random& random) {
   TriangleMesh mesh = shapes::sheet(3 + static_cast<int>(random.below(6)), 4);
   const std::size_t parts = 1 + random.below(12);
   for (std::size_t k = 0; k < parts; ++k) {
-    TriangleMesh part = random.below(3) == 0 ? moved(shapes::sheet(2, 3), anywhere(random, 0.5f)) : ball(random);
+    TriangleMesh part = random.below(3) == 0 ? shapes::shifted(shapes::sheet(2, 3), anywhere(random, 0.5f)) : ball(random);
     if (random.below(2) == 0) part = flipped(part);
     if (random.below(4) == 0) part = unshared(part);
     if (random.below(4) == 0) part = shapes::merged(part, part);

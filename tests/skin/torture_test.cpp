@@ -31,7 +31,7 @@ TEST(Torture, a_hundred_heaps_of_pieces) {
 TEST(Torture, five_hundred_parts) {
   Random random(5);
   TriangleMesh mesh = shapes::icosphere(2, 0.5f);
-  for (int k = 0; k < 500; ++k) mesh = shapes::merged(mesh, test::moved(shapes::icosphere(0, 0.02f), test::anywhere(random, 0.5f)));
+  for (int k = 0; k < 500; ++k) mesh = shapes::merged(mesh, shapes::shifted(shapes::icosphere(0, 0.02f), test::anywhere(random, 0.5f)));
   const Skeleton skeleton = test::any_skeleton(random);
   for (const Method method : kMethods) {
     BindOptions options;

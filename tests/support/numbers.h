@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "osteon/base/parallel.h"
@@ -23,6 +24,12 @@ inline std::vector<float> random_floats(std::size_t count, Random& random, float
   std::vector<float> out(count);
   for (float& x : out) x = scale * random.normal();
   return out;
+}
+
+inline double mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
 }
 
 // The largest difference, as a share of the largest number. Infinite if the shapes differ or anything is not finite.

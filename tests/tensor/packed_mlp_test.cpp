@@ -13,7 +13,7 @@ using test::random_matrix;
 using test::ScopedThreads;
 
 // Three meshes of 100, 1 and 150 rows; columns: 3 of the row, 8 of its mesh, 20 of the row, 4 of a row out of ten. Layers 35 -> 70 -> 6.
-struct Example {
+struct Segments {
   static constexpr std::size_t rows = 251;
   Random random{7};
   std::vector<std::int32_t> offsets{0, 100, 101, 251}, mesh_of, partner;
@@ -22,7 +22,7 @@ struct Example {
   std::vector<DenseLayer> layers{{random_matrix(70, 35, random), random_floats(70, random), Activation::relu},
                                  {random_matrix(6, 70, random), random_floats(6, random), Activation::relu}};
 
-  Example() {
+  Segments() {
     for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
       mesh_of.resize(static_cast<std::size_t>(offsets[s + 1]), static_cast<std::int32_t>(s));
     for (std::size_t r = 0; r < rows; ++r) partner.push_back(static_cast<std::int32_t>(random.below(10)));
@@ -41,12 +41,12 @@ struct Example {
 };
 
 TEST(PackedMlp, equals_the_plain_loops_over_the_columns_side_by_side) {
-  const Example example;
-  EXPECT_LE(test::relative_difference(example.packed()(example.input(), Example::rows).matrix(), example.by_loops().matrix()), 1e-5f);
+  const Segments example;
+  EXPECT_LE(test::relative_difference(example.packed()(example.input(), Segments::rows).matrix(), example.by_loops().matrix()), 1e-5f);
 }
 
 TEST(PackedMlp, maximum_of_each_segment_after_a_normalisation_that_may_fall) {
-  const Example example;
+  const Segments example;
   const std::vector<float> scale{1, -1, 0, 2, -0.5f, 3}, shift{0, 1, 2, -1, 0, 0.5f};
   const Tensor expected = loops::max_by(loops::scale_shift(example.by_loops(), scale, shift), example.offsets);
   const Tensor got = example.packed().max_by(example.input(), example.offsets, scale, shift);
@@ -65,12 +65,12 @@ TEST(PackedMlp, an_input_of_picked_columns_alone) {
 }
 
 TEST(PackedMlp, the_same_bits_for_any_number_of_threads) {
-  const Example example;
+  const Segments example;
   const std::vector<float> scale(6, -1.0f), shift(6, 0.25f);
   const PackedMlp mlp = example.packed();
   auto run = [&](int n) {
     const ScopedThreads scope(n);
-    return std::pair(mlp(example.input(), Example::rows).matrix(), mlp.max_by(example.input(), example.offsets, scale, shift).matrix());
+    return std::pair(mlp(example.input(), Segments::rows).matrix(), mlp.max_by(example.input(), example.offsets, scale, shift).matrix());
   };
   const auto [rows, maxima] = run(1);
   for (int n : {2, 4}) {

@@ -29,12 +29,12 @@ TriangleMesh box(const Vec3f& size) {
 TriangleMesh icosphere(int subdivisions, float radius) {
   const float t = std::numbers::phi_v<float>;
   TriangleMesh mesh;
-  for (const Vec3f& p : {Vec3f(-1, t, 0), Vec3f(1, t, 0), Vec3f(-1, -t, 0), Vec3f(1, -t, 0), Vec3f(0, -1, t), Vec3f(0, 1, t), Vec3f(0, -1, -t),
-                         Vec3f(0, 1, -t), Vec3f(t, 0, -1), Vec3f(t, 0, 1), Vec3f(-t, 0, -1), Vec3f(-t, 0, 1)})
+  for (const Vec3f& p : {Vec3f(-1, t, 0), Vec3f(1, t, 0), Vec3f(-1, -t, 0), Vec3f(1, -t, 0), Vec3f(0, -1, t), Vec3f(0, 1, t),
+                         Vec3f(0, -1, -t), Vec3f(0, 1, -t), Vec3f(t, 0, -1), Vec3f(t, 0, 1), Vec3f(-t, 0, -1), Vec3f(-t, 0, 1)})
     mesh.positions.push_back(p.normalized());
-  constexpr std::size_t faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                                        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                                        {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  constexpr std::size_t faces[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                                        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                                        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (const auto& f : faces) add_face(mesh, f[0], f[1], f[2]);
   for (int level = 0; level < subdivisions; ++level) {
     std::map<std::pair<VertexId, VertexId>, VertexId> middles;
@@ -56,20 +56,23 @@ TriangleMesh icosphere(int subdivisions, float radius) {
 
 TriangleMesh capsule(float radius, float length, int segments, int rings) {
   TriangleMesh mesh;
-  const int half = rings / 2 + 1;  // rings of each cap, its rim included
+  const int half = rings / 2 + 1;                // rings of each cap, its rim included
   std::vector<std::pair<float, float>> profile;  // (radius, height) from the bottom to the top, poles apart
   for (int k = 1; k <= half; ++k) {
     const float angle = std::numbers::pi_v<float> / 2 * static_cast<float>(k) / static_cast<float>(half);
     profile.emplace_back(radius * std::sin(angle), -radius * std::cos(angle));
   }
-  const int body = std::max(1, static_cast<int>(std::lround(length / (2 * std::numbers::pi_v<float> * radius / static_cast<float>(segments)))));
+  const int body =
+      std::max(1, static_cast<int>(std::lround(length / (2 * std::numbers::pi_v<float> * radius / static_cast<float>(segments)))));
   for (int k = 1; k < body; ++k) profile.emplace_back(radius, length * static_cast<float>(k) / static_cast<float>(body));
   for (int k = half; k >= 1; --k) {
     const auto [r, y] = profile[static_cast<std::size_t>(k - 1)];
     profile.emplace_back(r, length - y);
   }
   const std::size_t bottom = index(mesh.positions.push_back(Vec3f(0, -radius, 0)));
-  const auto ring_vertex = [&](std::size_t ring, int s) { return 1 + ring * static_cast<std::size_t>(segments) + static_cast<std::size_t>(s % segments); };
+  const auto ring_vertex = [&](std::size_t ring, int s) {
+    return 1 + ring * static_cast<std::size_t>(segments) + static_cast<std::size_t>(s % segments);
+  };
   for (const auto& [r, y] : profile)
     for (int s = 0; s < segments; ++s) {
       const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(s) / static_cast<float>(segments);
@@ -91,7 +94,8 @@ TriangleMesh sheet(int columns, int rows) {
   TriangleMesh mesh;
   for (int r = 0; r <= rows; ++r)
     for (int c = 0; c <= columns; ++c)
-      mesh.positions.push_back(Vec3f(static_cast<float>(c) / static_cast<float>(columns), static_cast<float>(r) / static_cast<float>(rows), 0));
+      mesh.positions.push_back(
+          Vec3f(static_cast<float>(c) / static_cast<float>(columns), static_cast<float>(r) / static_cast<float>(rows), 0));
   const auto at = [&](int r, int c) { return static_cast<std::size_t>(r * (columns + 1) + c); };
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
@@ -115,5 +119,7 @@ TriangleMesh transformed(TriangleMesh mesh, const Transform& transform) {
     for (Triangle& t : mesh.faces) std::swap(t[1], t[2]);
   return mesh;
 }
+
+TriangleMesh shifted(TriangleMesh mesh, const Vec3f& by) { return transformed(std::move(mesh), Transform(Eigen::Translation3f(by))); }
 
 }  // namespace osteon::shapes

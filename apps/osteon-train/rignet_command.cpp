@@ -55,6 +55,11 @@ void add_common_options(CLI::App& command, Arguments& a) {
   command.add_option("--minutes", a.options.minutes, "Train for this long")->check(CLI::NonNegativeNumber);
   command.add_option("--steps", a.options.steps, "Train for this many steps")->check(CLI::NonNegativeNumber);
   command.add_option("--batch", a.options.batch_size, "Characters a step")->check(CLI::PositiveNumber)->capture_default_str();
+  command
+      .add_option("--echo", a.options.echo,
+                  "In how many steps each changed character is shown, placed anew; for where steps wait for batches (divides --batch)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command.add_option("--lr", a.options.learning_rate, "Largest learning rate")->check(CLI::PositiveNumber)->capture_default_str();
   command.add_option("--weight-decay", a.options.adam.weight_decay, "Decoupled weight decay")->capture_default_str();
   command.add_option("--clip", a.options.adam.largest_norm, "Largest norm of the gradient (0: any)")->capture_default_str();

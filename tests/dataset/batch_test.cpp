@@ -36,7 +36,8 @@ const std::vector<Example>& examples(Parts parts) {
 
 Batch batch_of(Parts parts, const AugmentOptions& options, std::uint64_t seed) {
   Random random(seed);
-  const Example* one[] = {&examples(parts)[0]};
+  const std::shared_ptr<const Example> changed = varied(examples(parts)[0], parts, options, random);
+  const Example* one[] = {changed.get()};
   return training_batch(one, {.parts = parts}, options, random);
 }
 
@@ -80,7 +81,8 @@ TEST(TrainingBatch, changes_that_are_off_draw_no_random_numbers) {
   without_poses.poses.clear();
   const auto unposed = examples_of({without_poses}, Parts::joints);
   Random random(3);
-  const Example* one[] = {&unposed[0]};
+  const std::shared_ptr<const Example> changed = varied(unposed[0], Parts::joints, {}, random);
+  const Example* one[] = {changed.get()};
   EXPECT_EQ(training_batch(one, {}, {}, random).inputs.mesh.positions, batch_of(Parts::joints, {}, 3).inputs.mesh.positions);
 }
 

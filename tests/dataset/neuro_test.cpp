@@ -35,7 +35,9 @@ struct Corpus {
 TEST(NeuroBatch, each_vertex_s_targets_sum_to_one_or_are_zero) {
   const Corpus corpus(Parts::neuro);
   Random random(1);
-  const Batch batch = training_batch(corpus.all(), corpus.options, {}, random);
+  const auto biped = varied(corpus.examples[0], Parts::neuro, {}, random), quadruped = varied(corpus.examples[1], Parts::neuro, {}, random);
+  const Example* changed[] = {biped.get(), quadruped.get()};
+  const Batch batch = training_batch(changed, corpus.options, {}, random);
   const nets::BindArrays& choices = batch.inputs.neuro.choices;
   ASSERT_EQ(choices.offsets.size(), static_cast<std::size_t>(batch.inputs.mesh.batch.rows()) + 1);
   ASSERT_EQ(batch.targets.skin.size(), choices.vertex_of.size());

@@ -16,8 +16,6 @@ at::Tensor random_matrix(std::int64_t rows, std::int64_t columns, std::uint64_t 
   return x;
 }
 
-float difference(const at::Tensor& a, const at::Tensor& b) { return ((a - b).norm() / (b.norm() + 1e-6f)).item<float>(); }
-
 // Runs `layer` on both backends and compares values, running figures and the gradients of the input and of all parameters.
 template <class Layer>
 void expect_equal_layers(Layer layer) {
@@ -41,10 +39,11 @@ void expect_equal_layers(Layer layer) {
   prepare_for_training(plain, at::kCPU);
   prepare_for_training(fused, at::kCPU);
   at::Tensor x1 = random_matrix(67, 12, 1).set_requires_grad(true), x2 = random_matrix(67, 12, 1).set_requires_grad(true);
-  EXPECT_LT(difference(run(std::type_identity<FusedOps>(), fused, x2), run(std::type_identity<TorchOps>(), plain, x1)), 1e-5f);
-  EXPECT_LT(difference(x2.grad(), x1.grad()), 1e-4f);
+  EXPECT_LT(test::difference(run(std::type_identity<FusedOps>(), fused, x2), run(std::type_identity<TorchOps>(), plain, x1)), 1e-5f);
+  EXPECT_LT(test::difference(x2.grad(), x1.grad()), 1e-4f);
   for (const auto& [name, value] : plain)
-    EXPECT_LT(is_trained(name) ? difference(fused.at(name).grad(), value.grad()) : difference(fused.at(name), value), 1e-4f) << name;
+    EXPECT_LT(is_trained(name) ? test::difference(fused.at(name).grad(), value.grad()) : test::difference(fused.at(name), value), 1e-4f)
+        << name;
 }
 
 TEST(FusedLayers, edge_convolution_is_that_of_plain_operations) {

@@ -46,21 +46,19 @@ Result one_step(Network network, Engine engine, const NormRule& rule = {}) {
   return result;
 }
 
-float difference(const at::Tensor& a, const at::Tensor& b) { return ((a - b).norm() / (b.norm() + 1e-6f)).item<float>(); }
-
 class FusedNetwork : public ::testing::TestWithParam<Network> {};
 
 // A whole network makes a million decisions (ReLU, maximum); rounding turns a few of them, so gradients agree less closely than in one
 // layer, and by how much depends on the processor. A wrong formula is off by as much as the gradient itself.
 void expect_same_step(Network network, Engine engine, const NormRule& rule) {
   const Result plain = one_step(network, Engine::plain, rule), other_engine = one_step(network, engine, rule);
-  EXPECT_LT(difference(other_engine.output, plain.output), 1e-4f);
+  EXPECT_LT(test::difference(other_engine.output, plain.output), 1e-4f);
   for (const auto& [name, value] : plain.parameters) {
     const at::Tensor& other = other_engine.parameters.at(name);
     if (is_trained(name))
-      EXPECT_LT(difference(other.grad(), value.grad()), 1e-1f) << name;
+      EXPECT_LT(test::difference(other.grad(), value.grad()), 1e-1f) << name;
     else
-      EXPECT_LT(difference(other, value), 1e-4f) << name;
+      EXPECT_LT(test::difference(other, value), 1e-4f) << name;
   }
 }
 
@@ -82,7 +80,7 @@ TEST_P(FusedNetwork, renormalised_without_bounds_gives_the_values_of_use) {
   training.norm = {0.0, 1e9, 1e9};
   const at::NoGradGuard no_grad;
   const at::Tensor expected = run_network(GetParam(), parameters, test::two_characters(), use);
-  EXPECT_LT(difference(run_network(GetParam(), parameters, test::two_characters(), training), expected), 1e-4f);
+  EXPECT_LT(test::difference(run_network(GetParam(), parameters, test::two_characters(), training), expected), 1e-4f);
 }
 
 TEST_P(FusedNetwork, agrees_in_use) {
@@ -93,7 +91,7 @@ TEST_P(FusedNetwork, agrees_in_use) {
     options.engine = engine;
     return run_network(GetParam(), parameters, test::two_characters(), options);
   };
-  EXPECT_LT(difference(output(Engine::fused), output(Engine::plain)), 1e-5f);
+  EXPECT_LT(test::difference(output(Engine::fused), output(Engine::plain)), 1e-5f);
 }
 
 TEST_P(FusedNetwork, gives_the_same_bytes_with_one_and_two_threads) {

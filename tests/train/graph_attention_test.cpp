@@ -28,7 +28,7 @@ Passed passed(const Layer& layer, std::int64_t rows, std::int64_t columns) {
   return {y.detach(), x.grad()};
 }
 
-float difference(const at::Tensor& a, const at::Tensor& b) { return ((a - b).abs().max() / b.abs().max()).item<float>(); }
+float largest_difference(const at::Tensor& a, const at::Tensor& b) { return ((a - b).abs().max() / b.abs().max()).item<float>(); }
 
 class GraphAttention : public ::testing::Test {
  protected:
@@ -43,16 +43,16 @@ TEST_F(GraphAttention, has_the_values_and_gradients_of_plain_operations) {
   for (const std::int64_t heads : {1, 3}) {
     const Passed a = passed([&](const at::Tensor& x) { return graph_attention(x, offsets, sources, heads); }, vertices, 48);
     const Passed b = passed([&](const at::Tensor& x) { return plain.attend(x, offsets, sources, static_cast<int>(heads)); }, vertices, 48);
-    EXPECT_LT(difference(a.value, b.value), 1e-5f);
-    EXPECT_LT(difference(a.gradient, b.gradient), 1e-5f);
+    EXPECT_LT(largest_difference(a.value, b.value), 1e-5f);
+    EXPECT_LT(largest_difference(a.gradient, b.gradient), 1e-5f);
   }
 }
 
 TEST_F(GraphAttention, the_mean_has_them_too) {
   const Passed a = passed([&](const at::Tensor& x) { return segment_mean(x, offsets, sources); }, vertices, 70);
   const Passed b = passed([&](const at::Tensor& x) { return plain.mean_of(x, offsets, sources); }, vertices, 70);
-  EXPECT_LT(difference(a.value, b.value), 1e-5f);
-  EXPECT_LT(difference(a.gradient, b.gradient), 1e-5f);
+  EXPECT_LT(largest_difference(a.value, b.value), 1e-5f);
+  EXPECT_LT(largest_difference(a.gradient, b.gradient), 1e-5f);
 }
 
 TEST_F(GraphAttention, gives_the_same_bytes_with_one_and_two_threads) {

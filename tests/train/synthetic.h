@@ -11,6 +11,9 @@
 // Inputs of the networks without meshes: rings of vertices with neighbours beside them, and joints on a line.
 namespace osteon::train::test {
 
+// Of the norms, as a share.
+inline float difference(const at::Tensor& a, const at::Tensor& b) { return ((a - b).norm() / (b.norm() + 1e-6f)).item<float>(); }
+
 // What the voting and the binding network read.
 inline void add_features(NetworkInputs& inputs, int vertices, Random random) {
   std::vector<float> of_votes;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/train/trainer.h"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 
 #include "osteon/base/error.h"
 #include "osteon/mesh/shapes.h"
+#include "support/expect.h"
+#include "support/numbers.h"
 
 namespace osteon::train {
 namespace {
@@ -36,7 +37,7 @@ Rig capsule_rig(float length) {
   return rig;
 }
 
-std::vector<dataset::Example> examples(Task task) {
+std::vector<dataset::Example> capsules(Task task) {
   static const std::vector<dataset::PreparedCharacter> prepared = [] {
     dataset::PrepareOptions options;
     options.working_mesh = {150, 100, 5000};
@@ -61,18 +62,12 @@ std::vector<double> losses(
     Task task, Trainer& trainer, const std::function<bool()>& stop = [] { return false; }) {
   std::vector<double> found;
   trainer.run(
-      examples(task), {},
+      capsules(task), {},
       [&](const TrainReport& r) {
         if (!r.is_validation) found.push_back(r.figures.at("loss"));
       },
       stop);
   return found;
-}
-
-double mean(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
 }
 
 // The combined loss is the vertex loss times its weight, and the rest.
@@ -97,25 +92,38 @@ TEST_P(Learning, thirty_steps_lower_the_loss) {
   Trainer trainer(GetParam(), options, fresh_model(GetParam(), 1));
   const std::vector<double> found = losses(GetParam(), trainer);
   ASSERT_EQ(found.size(), 30u);
-  EXPECT_LT(mean(std::span(found).last(5)), 0.95 * mean(std::span(found).first(5)));
+  EXPECT_LT(osteon::test::mean(std::span(found).last(5)), 0.95 * osteon::test::mean(std::span(found).first(5)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Rignet, Learning,
                          ::testing::Values(Task::attention, Task::joints, Task::votes, Task::collapse, Task::bones, Task::root, Task::tree,
                                            Task::skin, Task::bind));
 
+// Also where batches share what they show.
 TEST(Trainer, goes_on_after_a_stop_as_if_there_had_been_none) {
   const auto file = std::filesystem::temp_directory_path() / ("osteon_resume_" + std::to_string(::getpid()) + ".safetensors");
-  TrainOptions options = options_for(6);
-  options.checkpoint = file;
-  Trainer whole(Task::root, options, fresh_model(Task::root, 1)), first(Task::root, options, fresh_model(Task::root, 1)),
-      second(Task::root, options, fresh_model(Task::root, 99));
-  const std::vector<double> expected = losses(Task::root, whole);
-  std::vector<double> found = losses(Task::root, first, [&] { return first.steps() == 3; });
-  second.resume();
-  for (const double loss : losses(Task::root, second)) found.push_back(loss);
-  std::filesystem::remove(file);
-  EXPECT_EQ(found, expected);
+  for (const std::size_t echo : {1, 2}) {
+    TrainOptions options = options_for(echo == 1 ? 6 : 24);
+    options.checkpoint = file;
+    options.echo = echo;
+    if (echo > 1) options.augment = {};
+    Trainer whole(Task::root, options, fresh_model(Task::root, 1)), first(Task::root, options, fresh_model(Task::root, 1)),
+        second(Task::root, options, fresh_model(Task::root, 99));
+    const std::vector<double> expected = losses(Task::root, whole);
+    std::vector<double> found = losses(Task::root, first, [&] { return first.steps() == options.steps / 2; });
+    second.resume();
+    for (const double loss : losses(Task::root, second)) found.push_back(loss);
+    std::filesystem::remove(file);
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(Trainer, refuses_an_echo_that_does_not_divide_the_batch) {
+  TrainOptions options = options_for(1);
+  options.batch_size = 4;
+  options.echo = 3;
+  EXPECT_EQ(test::error_of([&] { Trainer(Task::root, options, fresh_model(Task::root, 1)); }),
+            "echo: found 3, expected a divisor of the 4 characters of a step");
 }
 
 TEST(Trainer, refuses_the_checkpoint_of_another_task) {

@@ -76,37 +76,6 @@ Articulation some_articulation(const Example& example, const ArticulateOptions& 
   return with_sizes(pose, random_articulation(skeleton, example.symmetry, unbent, random), skeleton);
 }
 
-// The example itself, or one made of it, which is then kept in `made`: moved through its rig; without some accessories; with fewer joints;
-// its mesh reduced; its surface cut into other triangles. What is off draws no random number.
-const Example& varied(const Example& example, Parts parts, const AugmentOptions& options, Random& random, std::optional<Example>& made) {
-  const bool articulate = random.uniform() < options.articulate.probability && example.character.joints() > 1;
-  const bool fold = random.uniform() < options.fold && example.character.joints() > kLeastJoints;
-  const bool reduce = random.uniform() < options.reduce && parts == Parts::joints && example.character.vertices() > options.least_vertices;
-  const bool drop = options.drop > 0.0f && random.uniform() < options.drop;
-  const bool flip = options.flip > 0.0f && random.uniform() < options.flip;
-  if (!articulate && !fold && !reduce && !drop && !flip) return example;
-  PreparedCharacter changed =
-      articulate ? articulated(example.character, some_articulation(example, options.articulate, random)) : example.character;
-  if (drop) {
-    PreparedCharacter bare = without_accessories(changed, options.dropped, random);
-    if (bare.joints() > 1) changed = std::move(bare);
-  }
-  if (fold) {
-    const float share = std::exp(random.uniform(std::log(options.least_fold), 0.0f));
-    changed = folded(changed, std::max(kLeastJoints, static_cast<std::size_t>(share * static_cast<float>(changed.joints()))),
-                     example.symmetry, random);
-  }
-  if (reduce && changed.vertices() > options.least_vertices) {
-    const std::size_t target = options.least_vertices + random.below(changed.vertices() - options.least_vertices);
-    changed.mesh = geometry::decimate(changed.mesh, {.target_vertices = target}).mesh;
-  }
-  if (flip) changed.mesh = geometry::with_flipped_edges(std::move(changed.mesh), options.flips, random);
-  derive_from_shape(changed, parts);
-  const bool reads_plane = parts == Parts::pairs || parts == Parts::tree;
-  const auto symmetry = reads_plane ? geometry::symmetry_plane(changed.mesh) : example.symmetry;
-  return made.emplace(example_of(std::move(changed), parts, symmetry));
-}
-
 void append(std::vector<float>& to, const Vec3f& p) { to.insert(to.end(), {p.x(), p.y(), p.z()}); }
 
 void add_mesh(nets::MeshArrays& mesh, const PreparedCharacter& character, const Placement& placement,
@@ -290,11 +259,41 @@ std::vector<std::size_t> draw(std::span<const double> weights, std::size_t count
   return drawn;
 }
 
+std::shared_ptr<const Example> varied(const Example& example, Parts parts, const AugmentOptions& options, Random& random) {
+  const bool articulate = random.uniform() < options.articulate.probability && example.character.joints() > 1;
+  const bool fold = random.uniform() < options.fold && example.character.joints() > kLeastJoints;
+  const bool reduce = random.uniform() < options.reduce && parts == Parts::joints && example.character.vertices() > options.least_vertices;
+  const bool drop = options.drop > 0.0f && random.uniform() < options.drop;
+  const bool flip = options.flip > 0.0f && random.uniform() < options.flip;
+  if (!articulate && !fold && !reduce && !drop && !flip) return {std::shared_ptr<const Example>(), &example};
+  PreparedCharacter changed =
+      articulate ? articulated(example.character, some_articulation(example, options.articulate, random)) : example.character;
+  if (drop) {
+    PreparedCharacter bare = without_accessories(changed, options.dropped, random);
+    if (bare.joints() > 1) changed = std::move(bare);
+  }
+  if (fold) {
+    const float share = std::exp(random.uniform(std::log(options.least_fold), 0.0f));
+    changed = folded(changed, std::max(kLeastJoints, static_cast<std::size_t>(share * static_cast<float>(changed.joints()))),
+                     example.symmetry, random);
+  }
+  if (reduce && changed.vertices() > options.least_vertices) {
+    const std::size_t target = options.least_vertices + random.below(changed.vertices() - options.least_vertices);
+    changed.mesh = geometry::decimate(changed.mesh, {.target_vertices = target}).mesh;
+  }
+  if (flip) changed.mesh = geometry::with_flipped_edges(std::move(changed.mesh), options.flips, random);
+  derive_from_shape(changed, parts);
+  const bool reads_plane = parts == Parts::pairs || parts == Parts::tree;
+  const auto symmetry = reads_plane ? geometry::symmetry_plane(changed.mesh) : example.symmetry;
+  auto made = std::make_shared<Example>(example_of(std::move(changed), parts, symmetry));
+  made->character.voxels = {};  // most of what it weighs, and no batch reads them
+  return made;
+}
+
 Batch training_batch(std::span<const Example* const> examples, const BatchOptions& options, const AugmentOptions& augment, Random& random) {
   Batch batch;
-  for (const Example* original : examples) {
-    std::optional<Example> made;
-    const Example& example = varied(*original, options.parts, augment, random, made);
+  for (const Example* one : examples) {
+    const Example& example = *one;
     const PreparedCharacter& character = example.character;
     const Placement placement = random_placement(character.mesh.positions.raw(), augment, random);
     if (options.parts != Parts::tree)

@@ -63,7 +63,12 @@ struct BatchOptions {
   bool hide_mesh = false, hide_joints = false;                     // their positions are noise: what do the pairs' own features tell alone?
 };
 
-// For training: every character changed through its rig and placed anew, neighbours drawn anew, each pair of joints in random order.
+// The example itself, which must then live on, or one made of it: moved through its rig; without some accessories; with fewer joints; its
+// mesh reduced; its surface cut into other triangles. What is off draws no random number.
+std::shared_ptr<const Example> varied(const Example& example, Parts parts, const AugmentOptions& options, Random& random);
+
+// For training: every character placed anew, neighbours drawn anew, each pair of joints in random order. Of `augment` it reads where
+// characters may be placed and how wrong joints and their number may be.
 Batch training_batch(std::span<const Example* const> examples, const BatchOptions& options, const AugmentOptions& augment, Random& random);
 
 // For validation: nothing random; neighbours spread evenly; of each mesh first all pairs i < j, then the same as j, i.

@@ -115,6 +115,8 @@ Trainer::Trainer(Task task, const TrainOptions& options, Model model)
     : task_(task), options_(options), model_(std::move(model)), adam_(options.adam) {
   options_.task.run.mode = Mode::training;
   options_.task.batch.parts = parts_of(task);
+  if (options_.echo == 0 || options_.batch_size % options_.echo != 0)
+    throw Error("echo: found {}, expected a divisor of the {} characters of a step", options_.echo, options_.batch_size);
   if (options_.steps <= 0 && options_.minutes <= 0.0) throw Error("training needs an end: a number of steps or of minutes");
   for (auto& [part, parameters] : model_.parts) prepare_for_training(parameters, options_.task.run.device);
 }
@@ -132,12 +134,24 @@ double Trainer::learning_rate() const {
   return options_.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * (t - options_.warm_up) / (1.0 - options_.warm_up)));
 }
 
-dataset::Batch Trainer::batch_of(const std::vector<dataset::Example>& train, const std::vector<double>& weights,
-                                 std::uint64_t number) const {
-  Random random = Random(options_.seed).fork(number);
-  std::vector<const dataset::Example*> drawn;
-  for (const std::size_t i : dataset::draw(weights, options_.batch_size, random)) drawn.push_back(&train[i]);
-  return dataset::training_batch(drawn, options_.task.batch, options_.augment, random);
+Variations Trainer::variations_of(const std::vector<dataset::Example>& train) const {
+  std::vector<double> weights = options_.sampling.empty() ? dataset::sampling_weights(train) : options_.sampling;
+  const auto share = [this, &train, weights = std::move(weights)](std::uint64_t stream) {
+    Random random = Random(options_.seed).fork(stream);
+    Variations::Characters changed;
+    for (const std::size_t i : dataset::draw(weights, options_.batch_size / options_.echo, random))
+      changed.push_back(dataset::varied(train[i], options_.task.batch.parts, options_.augment, random));
+    return changed;
+  };
+  return Variations(share, options_.echo);
+}
+
+dataset::Batch Trainer::batch_of(Variations& variations, std::uint64_t number) const {
+  Random random = Random(options_.seed).fork(number).fork(1);  // not what they were changed by
+  const Variations::Characters characters = variations.of(number);
+  std::vector<const dataset::Example*> shown;
+  for (const auto& character : characters) shown.push_back(character.get());
+  return dataset::training_batch(shown, options_.task.batch, options_.augment, random);
 }
 
 // Plain batch normalisation at first, while the running figures still chase the weights; then more and more renormalised. The running
@@ -188,7 +202,6 @@ void Trainer::keep_if_best(const std::map<std::string, double>& figures) {
 
 TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::vector<dataset::Example>& validation,
                          const std::function<void(const TrainReport&)>& report, const std::function<bool()>& stop) {
-  const std::vector<double> weights = options_.sampling.empty() ? dataset::sampling_weights(train) : options_.sampling;
   const auto validated = [&] {
     auto figures = validate(task_, model_, validation, options_.task);
     keep_if_best(figures);
@@ -199,7 +212,8 @@ TrainResult Trainer::run(const std::vector<dataset::Example>& train, const std::
   if (options_.keep_best && !best_) validated();
   Averages averages;
   Timer report_timer(options_.report_seconds), validation_timer(options_.validate_seconds), checkpoint_timer(options_.checkpoint_seconds);
-  BatchesAhead batches([&](std::uint64_t number) { return batch_of(train, weights, number); }, static_cast<std::uint64_t>(step_));
+  Variations variations = variations_of(train);
+  BatchesAhead batches([&](std::uint64_t number) { return batch_of(variations, number); }, static_cast<std::uint64_t>(step_));
   bool stopped = false;
   while (progress() < 1.0 && !(stopped = stop())) {
     const int looks = looks_due();

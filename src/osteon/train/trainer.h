@@ -12,6 +12,7 @@
 #include "osteon/train/batches_ahead.h"
 #include "osteon/train/step_profile.h"
 #include "osteon/train/tasks.h"
+#include "osteon/train/variations.h"
 
 namespace osteon::train {
 
@@ -20,6 +21,7 @@ struct TrainOptions {
   AdamOptions adam;
   dataset::AugmentOptions augment;
   std::size_t batch_size = 2;   // characters a step
+  std::size_t echo = 1;         // in how many steps each changed character is shown, placed anew (variations.h); divides batch_size
   double learning_rate = 1e-3;  // the largest: it rises over the warm-up and then falls to zero along a cosine
   double warm_up = 0.03;        // share of the run
   std::int64_t steps = 0;       // the run ends after these ...
@@ -75,7 +77,8 @@ class Trainer {
   double learning_rate() const;
   std::map<std::string, double> step(BatchesAhead& batches);
   NormRule norm_rule() const;
-  dataset::Batch batch_of(const std::vector<dataset::Example>& train, const std::vector<double>& weights, std::uint64_t number) const;
+  Variations variations_of(const std::vector<dataset::Example>& train) const;
+  dataset::Batch batch_of(Variations& variations, std::uint64_t number) const;
   void keep_if_best(const std::map<std::string, double>& figures);
   void save() const;
 

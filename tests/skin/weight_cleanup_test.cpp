@@ -104,5 +104,61 @@ TEST(WeightCleanup, an_original_vertex_blends_the_corners_of_the_face_it_lies_on
   EXPECT_NEAR(out[VertexId{2}][0].weight, 0.5f / 0.85f, 1e-6f);
 }
 
+// A sheet of so many columns, its left half bound to joint 0, its right half to joint 1.
+struct HalvedSheet {
+  geometry::CleanMesh clean;
+  SkinWeights weights;
+  explicit HalvedSheet(int columns) : clean(geometry::clean(shapes::sheet(columns, columns))) {
+    const TriangleMesh sheet = shapes::sheet(columns, columns);
+    for (const Vec3f& p : sheet.positions) weights.append({{{p.x() < 0.5f ? JointId{0} : JointId{1}, 1.0f}}});
+  }
+};
+
+float weight_of(std::span<const Influence> row, JointId joint) {
+  const auto found = std::ranges::find(row, joint, &Influence::joint);
+  return found == row.end() ? 0.0f : found->weight;
+}
+
+TEST(WeightCleanup, coarse_meshes_are_even_enough) {
+  const HalvedSheet sheet(100);
+  EXPECT_EQ(evened(sheet.weights, sheet.clean, 4), sheet.weights);
+}
+
+TEST(WeightCleanup, on_a_fine_mesh_a_step_becomes_a_ramp_and_nothing_else_changes) {
+  constexpr int columns = 300;
+  const HalvedSheet sheet(columns);
+  const TriangleMesh mesh = shapes::sheet(columns, columns);
+  const SkinWeights even = evened(sheet.weights, sheet.clean, 4);
+  validate(even, mesh.positions.size(), 2);
+  float largest_step = 0.0f;
+  for (int c = 0; c < columns; ++c) {  // along the middle row, a vertex after the other
+    const auto v = static_cast<std::uint32_t>((columns / 2) * (columns + 1) + c);
+    const Vec3f &here = mesh.positions[VertexId{v}], &next = mesh.positions[VertexId{v + 1}];
+    ASSERT_GT(next.x(), here.x());
+    const float step = weight_of(even[VertexId{v + 1}], JointId{1}) - weight_of(even[VertexId{v}], JointId{1});
+    EXPECT_GE(step, -1e-6f);
+    largest_step = std::max(largest_step, step);
+    if (std::abs(here.x() - 0.5f) > 8.5f / columns) EXPECT_EQ(even[VertexId{v}][0], sheet.weights[VertexId{v}][0]);
+  }
+  EXPECT_LT(largest_step, 0.3f);  // 1 before
+  EXPECT_GT(largest_step, 0.05f);
+}
+
+TEST(WeightCleanup, evened_weights_keep_to_the_largest_few) {
+  const TriangleMesh mesh = shapes::icosphere(7, 0.5f);
+  SkinWeights weights;
+  Random random(4);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    std::vector<Influence> row;
+    for (int k = 0; k < 3; ++k)
+      row.push_back({static_cast<JointId>(static_cast<std::uint16_t>(random.below(9))), random.uniform(0.1f, 1.0f)});
+    weights.append(row);
+  }
+  const SkinWeights even = evened(weights, geometry::clean(mesh), 3);
+  validate(even, mesh.positions.size(), 9);
+  EXPECT_EQ(even.max_influences(), 3u);
+  EXPECT_NE(even, weights);
+}
+
 }  // namespace
 }  // namespace osteon::skin

@@ -174,6 +174,7 @@ NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skelet
   skin::prune_rows(weights, options.prune_share, options.max_influences);
   skin::fill_empty_rows(weights, working.mesh.positions, ring);
   result.weights = skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
+  result.weights = skin::evened(result.weights, working.clean, options.max_influences);
   if (options.rigid_islands) result.rigid_islands = skin::make_islands_rigid(result.weights, working.clean);
   return result;
 }

@@ -37,6 +37,7 @@ SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& worki
   skin::fill_empty_rows(weights, working.mesh.positions, one_ring);
   if (!(weights.maxCoeff() > 0.0f)) weights.col(0).setOnes();
   SkinWeights out = skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
+  out = skin::evened(out, working.clean, options.max_influences);
   if (options.rigid_islands) skin::make_islands_rigid(out, working.clean);
   return out;
 }

@@ -15,6 +15,9 @@ namespace osteon::skin {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 256;
+constexpr float kReach = 0.008f;  // of evened weights: what dense meshes need to look smooth; a fifth of the working mesh's edges
+constexpr int kRounds = 8;
+constexpr float kLeast = 0.01f;  // of a vertex's largest: what has spread thinner than this is not worth a place
 
 bool is_empty(const Matrix& weights, std::size_t row) { return !(weights.row(static_cast<Eigen::Index>(row)).maxCoeff() > 0.0f); }
 
@@ -74,6 +77,88 @@ std::vector<std::vector<Influence>> sparse_rows(const Matrix& weights) {
   return rows;
 }
 
+// How much of each neighbour's row comes to a vertex in one round: parallel to the neighbourhoods' members. Half of it all where edges are
+// short; from there on as much as keeps the variance of the way the same.
+std::vector<float> conductances(const TriangleMesh& mesh, const geometry::Neighbourhoods& one_ring) {
+  Eigen::AlignedBox3f box;
+  for (const Vec3f& p : mesh.positions) box.extend(p);
+  const float reach = kReach * box.sizes().maxCoeff(), step = reach / std::sqrt(0.5f * kRounds);
+  std::vector<float> out(one_ring.members.size(), 0.0f);
+  parallel_for(one_ring.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto neighbours = one_ring.of(v);
+      for (std::size_t k = 0; k < neighbours.size(); ++k) {
+        const float length = (mesh.positions[VertexId{neighbours[k]}] - mesh.positions[static_cast<VertexId>(v)]).norm();
+        const float share = std::min(1.0f, step * step / (length * length));
+        if (length < reach) out[one_ring.offsets[v] + k] = 0.5f * share / static_cast<float>(neighbours.size());
+      }
+    }
+  });
+  return out;
+}
+
+// Rows of a fixed number of places, the largest weight first, joints of weight 0 in those that are left over.
+struct FewInfluences {
+  std::size_t most;
+  std::vector<Influence> places;
+
+  std::span<const Influence> of(std::size_t v) const { return std::span(places).subspan(v * most, most); }
+  std::span<Influence> of(std::size_t v) { return std::span(places).subspan(v * most, most); }
+};
+
+// Adds rows up joint by joint.
+class RowSum {
+ public:
+  explicit RowSum(std::size_t joints) : sums_(joints, 0.0f) {}
+  void add(std::span<const Influence> row, float share) {
+    for (const Influence& i : row) {
+      if (!(i.weight > 0.0f)) break;
+      float& sum = sums_[index(i.joint)];
+      if (sum == 0.0f) joints_.push_back(i.joint);
+      sum += share * i.weight;
+    }
+  }
+  // The largest of the sums, scaled to the sum 1; forgets all.
+  void take_largest(std::span<Influence> out) {
+    const auto larger = [&](JointId a, JointId b) {
+      const float wa = sums_[index(a)], wb = sums_[index(b)];
+      return wa != wb ? wa > wb : a < b;
+    };
+    const std::size_t kept = std::min(out.size(), joints_.size());
+    std::partial_sort(joints_.begin(), joints_.begin() + static_cast<std::ptrdiff_t>(kept), joints_.end(), larger);
+    float whole = 0.0f;
+    for (std::size_t k = 0; k < kept; ++k) whole += sums_[index(joints_[k])];
+    std::ranges::fill(out, Influence{JointId{0}, 0.0f});
+    for (std::size_t k = 0; k < kept; ++k) out[k] = {joints_[k], sums_[index(joints_[k])] / whole};
+    for (const JointId j : joints_) sums_[index(j)] = 0.0f;
+    joints_.clear();
+  }
+
+ private:
+  std::vector<float> sums_;
+  std::vector<JointId> joints_;
+};
+
+FewInfluences diffused(const FewInfluences& rows, const geometry::Neighbourhoods& one_ring, const std::vector<float>& conductance,
+                       std::size_t joints) {
+  FewInfluences out = rows;
+  parallel_for(one_ring.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    RowSum sum(joints);
+    for (std::size_t v = begin; v < end; ++v) {
+      float kept = 1.0f;
+      for (std::size_t k = one_ring.offsets[v]; k < one_ring.offsets[v + 1]; ++k) {
+        if (conductance[k] == 0.0f) continue;
+        sum.add(rows.of(one_ring.members[k]), conductance[k]);
+        kept -= conductance[k];
+      }
+      if (kept == 1.0f) continue;
+      sum.add(rows.of(v), kept);
+      sum.take_largest(out.of(v));
+    }
+  });
+  return out;
+}
+
 }  // namespace
 
 Matrix smooth_rows(const Matrix& weights, const geometry::Neighbourhoods& one_ring) {
@@ -124,6 +209,26 @@ SkinWeights weights_on_original(const Matrix& weights, const PerVertex<geometry:
       for (const Influence& i : rows[index(place.vertices[corner])]) blended.push_back({i.joint, place.weights[corner] * i.weight});
     [[maybe_unused]] const bool has_weight = out.append(blended, max_influences);
     assert(has_weight);
+  }
+  return out;
+}
+
+SkinWeights evened(const SkinWeights& weights, const geometry::CleanMesh& clean, std::size_t max_influences) {
+  const geometry::Neighbourhoods one_ring = geometry::one_ring(clean.mesh);
+  const std::vector<float> conductance = conductances(clean.mesh, one_ring);
+  if (std::ranges::all_of(conductance, [](float c) { return c == 0.0f; })) return weights;
+  assert(weights.max_influences() <= max_influences);
+  FewInfluences rows{max_influences, std::vector<Influence>(one_ring.size() * max_influences, {JointId{0}, 0.0f})};
+  std::size_t joints = 0;
+  for (VertexId v : clean.from_original.ids()) {
+    std::ranges::copy(weights[v], rows.of(index(clean.from_original[v])).begin());
+    for (const Influence& i : weights[v]) joints = std::max(joints, index(i.joint) + std::size_t{1});
+  }
+  for (int round = 0; round < kRounds; ++round) rows = diffused(rows, one_ring, conductance, joints);
+  SkinWeights out;
+  for (const VertexId v : clean.from_original) {
+    const auto row = rows.of(index(v));
+    out.append({row.begin(), std::ranges::find_if(row, [&](const Influence& i) { return i.weight < kLeast * row.front().weight; })});
   }
   return out;
 }

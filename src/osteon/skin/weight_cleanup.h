@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "osteon/geometry/cleanup.h"
 #include "osteon/geometry/neighbourhoods.h"
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/rig/skin_weights.h"
@@ -27,5 +28,11 @@ std::size_t fill_empty_rows(Matrix& weights, const PerVertex<Vec3f>& positions, 
 // Weights of the original's vertices: rows blended at the points where they lie on the working mesh, at most `max_influences` kept.
 // Column = JointId. Pre: no row of `weights` is empty.
 SkinWeights weights_on_original(const Matrix& weights, const PerVertex<geometry::SurfacePoint>& places, std::size_t max_influences);
+
+// The same weights without creases. On a mesh finer than the working mesh, cutting to the few largest leaves a step of one edge's width
+// where one joint gives way to another. Eight rounds of diffusion along edges make it a ramp of about 0.008 (longest side 1), and cut again
+// after each; edges longer than that carry nothing, so coarser meshes keep their weights to the bit. Weights below a hundredth of a
+// vertex's largest go. `weights` are of the mesh that `clean` was made from. Pre: rows have 1 to max_influences influences.
+SkinWeights evened(const SkinWeights& weights, const geometry::CleanMesh& clean, std::size_t max_influences);
 
 }  // namespace osteon::skin

@@ -32,7 +32,8 @@ SkinWeights weights_on_original(const Matrix& weights, const PerVertex<geometry:
 // The same weights without creases. On a mesh finer than the working mesh, cutting to the few largest leaves a step of one edge's width
 // where one joint gives way to another. Eight rounds of diffusion along edges make it a ramp of about 0.008 (longest side 1), and cut again
 // after each; edges longer than that carry nothing, so coarser meshes keep their weights to the bit. Weights below a hundredth of a
-// vertex's largest go. `weights` are of the mesh that `clean` was made from. Pre: rows have 1 to max_influences influences.
+// vertex's largest go. `weights` are of the mesh that `clean` was made from. Pre: rows have 1 to max_influences influences,
+// and vertices that became one in `clean` have the same row, as weights_on_original() gives them.
 SkinWeights evened(const SkinWeights& weights, const geometry::CleanMesh& clean, std::size_t max_influences);
 
 }  // namespace osteon::skin

@@ -18,6 +18,7 @@
 #include "osteon/geometry/volumetric_geodesic.h"
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/geometry/working_mesh.h"
+#include "osteon/pipelines/edge_loops.h"
 #include "osteon/pipelines/joint_votes.h"
 #include "osteon/pipelines/mirrored_skin.h"
 #include "osteon/pipelines/neuroskinning.h"
@@ -233,6 +234,13 @@ void judge(const JointCandidates& seen, const JointExtraction& found, const PerJ
   report.confidence = *report.character * std::accumulate(joints.begin(), joints.end(), 0.0f) / static_cast<float>(joints.size());
 }
 
+// Normalised; those that the reduction took away are among them.
+std::vector<Vec3f> original_vertices(const Body& body) {
+  std::vector<Vec3f> out;
+  for (const Vec3f& p : body.working.clean.mesh.positions) out.push_back(body.working.normalization.apply(p));
+  return out;
+}
+
 // In the body's frame, in the unit of the mesh.
 Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RignetResult& result,
                           Stages& stages) {
@@ -250,7 +258,10 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
   const TreeEvidence known = stages.run("connectivity networks", [&] { return evidence(found.joints, body, models, options.ablation); });
   const JointTree tree = stages.run("tree", [&] { return connect(found.joints, known, options.tree); });
   report.bone_confidence = tree.likelihood;
-  TreeSkeleton made = make_skeleton(found.joints, tree, body.working.normalization, body.frame.is_seen_from_behind);
+  const JointSet joints = options.ablation.edge_loops
+                              ? stages.run("edge loops", [&] { return drawn_to_edge_loops(found.joints, tree, original_vertices(body)); })
+                              : found.joints;
+  TreeSkeleton made = make_skeleton(joints, tree, body.working.normalization, body.frame.is_seen_from_behind);
   judge(seen, found, made.from, body, result);
   return std::move(made.skeleton);
 }

@@ -23,6 +23,7 @@ enum class Symmetry { automatic, off };
 struct Ablation {
   bool attention = true;             // false: every vertex's vote counts alike
   bool views = true;                 // false: the network sees the character once, as it is
+  bool edge_loops = true;            // false: joints stay where the votes gather
   bool bone_network = true;          // false: the nearer two joints are, the likelier a bone joins them
   bool geodesic = true;              // false: a bone is as far from a vertex as in a straight line
   float neuroskinning = 0.5f;        // its share in the weights, beside the binding network's; 0: that one alone
@@ -52,8 +53,8 @@ struct RignetResult {
 };
 
 // The whole of RigNet: Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
-// mesh -> its own frame (body_frame.h) -> clean working mesh -> displacement and attention -> joints -> tree -> skin -> weights on the mesh
-// that was given.
+// mesh -> its own frame (body_frame.h) -> clean working mesh -> displacement and attention -> joints -> tree -> joints drawn to edge loops
+// (edge_loops.h) -> skin -> weights on the mesh that was given.
 // The rig is always valid: where the networks find no joints it is a single one in the middle, with confidence 0 and a warning.
 // The same for any order of vertices and faces (weights follow their vertices) and any number of threads.
 // The same, turned, for a mesh turned by right angles about the up axis, or that stands on z = 0 instead of y = 0. Where it stands on

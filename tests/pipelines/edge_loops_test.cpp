@@ -126,14 +126,14 @@ TEST(EdgeLoops, no_joint_goes_past_the_middle_of_its_bones) {
 }
 
 // A spine on the plane and two arms that hang on it.
-struct Figure {
+struct ThreeLimbs {
   JointSet joints;
   JointTree tree;
   std::vector<Vec3f> vertices;
 };
 
-Figure figure() {
-  Figure out;
+ThreeLimbs three_limbs() {
+  ThreeLimbs out;
   out.joints = joint_set_of(std::vector<Vec3f>{{0, 0.2f, 0},
                                                {0, 0.5f, 0.02f},
                                                {0, 0.8f, 0},
@@ -151,7 +151,7 @@ Figure figure() {
 }
 
 TEST(EdgeLoops, partners_stay_mirror_images_and_hear_both_sides) {
-  const auto [joints, tree, vertices] = figure();
+  const auto [joints, tree, vertices] = three_limbs();
   const JointSet found = drawn_to_edge_loops(joints, tree, vertices);
   for (std::size_t j = 0; j < found.size(); ++j) EXPECT_EQ(found.positions[*found.partner[j]], mirrored(found.positions[j]));
   EXPECT_NE(found.positions[1], joints.positions[1]);
@@ -165,7 +165,7 @@ TEST(EdgeLoops, partners_stay_mirror_images_and_hear_both_sides) {
 }
 
 TEST(EdgeLoops, a_turned_body_gets_turned_joints) {
-  const auto [joints, tree, vertices] = figure();
+  const auto [joints, tree, vertices] = three_limbs();
   const Plane plane{Vec3f(1, 0, 2).normalized(), 0.1f};
   JointSet turned = joints;
   turned.frame = MirrorFrame::of(plane);

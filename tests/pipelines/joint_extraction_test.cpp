@@ -160,28 +160,6 @@ TEST(JointExtraction, a_joint_whose_votes_are_spread_is_found_with_twice_the_ban
   EXPECT_NEAR(joints.positions.back().y(), 0.55f, 0.02f);
 }
 
-// Two joints of 400 votes each and a weak one; a joint must gather a twentieth of all votes.
-std::size_t joints_beside_a_weak_one(int votes, float height, float bandwidth = kDefaultBandwidth, float thickness = 0.02f) {
-  JointCandidates seen;
-  for (const float y : {0.2f, 0.9f}) seen.positions.insert(seen.positions.end(), 400, Vec3f(0.0f, y, 0.0f));
-  seen.positions.insert(seen.positions.end(), static_cast<std::size_t>(votes), Vec3f(0.0f, height, 0.0f));
-  seen.thickness.assign(seen.positions.size(), thickness);
-  seen.attention.assign(seen.positions.size(), 1.0f);
-  const JointExtractionOptions options{.bandwidth = bandwidth, .min_share = 0.05f, .spread_share = 1.0f};
-  return extract_joints(seen, geometry::VoxelGrid{}, std::nullopt, options).joints.size();
-}
-
-TEST(JointExtraction, a_joint_of_a_thin_part_far_from_all_others_may_be_half_as_strong) {
-  EXPECT_EQ(joints_beside_a_weak_one(30, 0.55f), 3u);
-  EXPECT_EQ(joints_beside_a_weak_one(15, 0.55f), 2u);                           // less than half
-  EXPECT_EQ(joints_beside_a_weak_one(30, 0.27f), 2u);                           // not far
-  EXPECT_EQ(joints_beside_a_weak_one(60, 0.27f), 3u);                           // strong
-  EXPECT_EQ(joints_beside_a_weak_one(30, 0.55f, kDefaultBandwidth, 0.1f), 2u);  // not thin
-  // Coarser rigs: 0.15 is not far any more.
-  EXPECT_EQ(joints_beside_a_weak_one(60, 0.35f, 2.0f * kDefaultBandwidth), 2u);
-  EXPECT_EQ(joints_beside_a_weak_one(60, 0.38f, 2.0f * kDefaultBandwidth), 3u);
-}
-
 TEST(JointExtraction, nothing_attended_to_gives_no_joints) {
   JointCandidates seen = candidates_around(figure(), 20, 0.01f, 12);
   std::ranges::fill(seen.attention, 0.0f);

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
-#include <span>
 
 #include "osteon/pipelines/mean_shift.h"
 
@@ -16,7 +15,6 @@ namespace {
 struct Votes {
   std::vector<Vec3f> positions;
   std::vector<float> weights;
-  std::vector<float> thickness;  // empty: not known
   bool inside_used = true;
 };
 
@@ -32,7 +30,6 @@ Votes plausible_votes(const JointCandidates& candidates, const geometry::VoxelGr
       if (!(candidates.attention[i] > min_attention) || !q.allFinite() || (only_inside && !voxels.inside(q))) continue;
       out.positions.push_back(frame.to(q));
       out.weights.push_back(candidates.attention[i]);
-      if (!candidates.thickness.empty()) out.thickness.push_back(candidates.thickness[i]);
     }
     return out;
   };
@@ -83,13 +80,13 @@ std::vector<Mode> modes_of(const std::vector<Vec3f>& shifted, const std::vector<
   return modes;
 }
 
-// How many of the modes, which come by falling share, are before the thin tail; enough for two joints.
-std::size_t strong_modes(std::span<const Mode> modes, float min_share) {
+// Modes come by falling share: drops the thin tail, but keeps two.
+void prune(std::vector<Mode>& modes, float min_share) {
   const auto joints_of = [](const Mode& m) { return m.is_pair ? 2 : 1; };
   std::size_t kept = 0;
   int joints = 0;
   while (kept < modes.size() && (modes[kept].share >= min_share || joints < 2)) joints += joints_of(modes[kept++]);
-  return kept;
+  modes.resize(kept);
 }
 
 // Attention of the candidates (without their images) that gather around a place.
@@ -161,13 +158,6 @@ Votes unexplained(const Votes& votes, const std::vector<Vec3f>& shifted, const J
   return rest;
 }
 
-// Whether there is a joint so near to the mode or, of a pair, to its image.
-bool has_joint_within(float distance, const Mode& mode, const JointSet& joints) {
-  return std::ranges::any_of(joints.positions, [&](const Vec3f& p) {
-    return (p - mode.position).norm() <= distance || (mode.is_pair && (p - mirrored(mode.position)).norm() <= distance);
-  });
-}
-
 // Joints for what the first search left over, by one with twice its bandwidth, farther than that from those that there are.
 void add_spread_joints(JointSet& joints, const Votes& rest, double all, const geometry::VoxelGrid& voxels, Mirror mirror,
                        JointExtractionOptions options) {
@@ -175,35 +165,14 @@ void add_spread_joints(JointSet& joints, const Votes& rest, double all, const ge
   const JointSet before = joints;
   options.bandwidth *= 2.0f;
   const float h = options.bandwidth;
-  const auto shifted =
-      mean_shift(rest.positions, rest.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
+  const auto shifted = mean_shift(rest.positions, rest.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
   std::vector<float> shares = kernel_density(shifted, rest.weights, mirror, h);
   for (float& share : shares) share = static_cast<float>(static_cast<double>(share) / all);
   for (const Mode& mode : modes_of(shifted, shares, mirror, h)) {
-    if (mode.share >= options.spread_share && !has_joint_within(h, mode, before))
+    const auto taken = [&](const Vec3f& p) { return (p - mode.position).norm() <= h || (p - mirrored(mode.position)).norm() <= h; };
+    if (mode.share >= options.spread_share && std::ranges::none_of(before.positions, taken))
       add_mode(joints, mode, rest, shifted, voxels, mirror, options);
   }
-}
-
-// Whether the mean vote of a mode is of a thin part.
-bool is_thin(const Mode& mode, const Votes& votes, const std::vector<Vec3f>& shifted, float h, float thin) {
-  double sum = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < votes.thickness.size(); ++i)
-    if (votes.thickness[i] > 0.0f && (shifted[i] - mode.position).norm() <= h) {
-      sum += static_cast<double>(votes.weights[i] * votes.thickness[i]);
-      all += static_cast<double>(votes.weights[i]);
-    }
-  return all > 0.0 && sum < static_cast<double>(thin) * all;
-}
-
-// Of `tail`, the modes that gather too little, by falling share.
-void add_lonely_joints(JointSet& joints, std::span<const Mode> tail, float min_share, const Votes& votes, const std::vector<Vec3f>& shifted,
-                       const geometry::VoxelGrid& voxels, Mirror mirror, const JointExtractionOptions& options) {
-  const float h = options.bandwidth, far = options.lonely_distance * std::max(1.0f, h / kDefaultBandwidth);
-  for (const Mode& mode : tail)
-    if (mode.share >= options.lonely_share * min_share && !has_joint_within(far, mode, joints) &&
-        is_thin(mode, votes, shifted, h, options.thin))
-      add_mode(joints, mode, votes, shifted, voxels, mirror, options);
 }
 
 JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxels, const MirrorFrame& frame, Mirror mirror,
@@ -213,16 +182,12 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   out.bandwidth = options.bandwidth;
   out.inside_used = votes.inside_used;
   const float h = options.bandwidth;
-  const auto shifted =
-      mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
-  const std::vector<Mode> all_modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
-  const std::span<const Mode> modes(all_modes);
-  const float min_share = options.min_share * share_scale(h) * std::sqrt(20.0f / options.expected_joints);
-  const std::size_t strong = strong_modes(modes, min_share);
-  for (const Mode& mode : modes.first(strong)) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
+  const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
+  std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
+  prune(modes, options.min_share * share_scale(h) * std::sqrt(20.0f / options.expected_joints));
+  for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);
   const double all = std::accumulate(votes.weights.begin(), votes.weights.end(), 0.0) * (mirror == Mirror::across_x ? 2.0 : 1.0);
   add_spread_joints(out.joints, unexplained(votes, shifted, out.joints, 1.5f * h), all, voxels, mirror, options);
-  add_lonely_joints(out.joints, modes.subspan(strong), min_share, votes, shifted, voxels, mirror, options);
   out.explained = explained_share(out.joints, shifted, votes.weights, h);
   return out;
 }
@@ -240,7 +205,6 @@ float bandwidth_of_detail(float detail) {
 JointExtraction extract_joints(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const std::optional<Plane>& symmetry,
                                const JointExtractionOptions& options) {
   assert(candidates.positions.size() == candidates.attention.size());
-  assert(candidates.thickness.empty() || candidates.thickness.size() == candidates.positions.size());
   const MirrorFrame frame = symmetry ? MirrorFrame::of(*symmetry) : MirrorFrame{};
   const Votes votes = plausible_votes(candidates, voxels, frame, options.min_attention);
   return extract_from(votes, voxels, frame, symmetry ? Mirror::across_x : Mirror::off, options);

@@ -21,7 +21,6 @@ float bandwidth_of_detail(float detail);
 struct JointCandidates {
   std::vector<Vec3f> positions;  // (V) normalised frame
   std::vector<float> attention;  // (V) 0..1
-  std::vector<float> thickness;  // (V) of the body beneath the vertex, 0 where there is none; empty: nothing is known to be thin
 };
 
 struct JointExtractionOptions {
@@ -33,10 +32,7 @@ struct JointExtractionOptions {
   float min_share =
       0.016f;  // one of 20 joints gathers at least this share of all attention within the default bandwidth (of J: times
                // the root of 20/J); less within a finer one (by the power of 2.5) and more within a coarser one (in proportion)
-  float spread_share = 0.02f;  // of a joint that is found only with twice the bandwidth, among the votes that no other joint explains
-  // A thin leg has few vertices to vote for its knee: a joint of a part thinner than thin, farther than lonely_distance from all others,
-  // may gather so much less (1: no less). Within a bandwidth coarser than the default that distance is larger in proportion.
-  float lonely_share = 0.5f, lonely_distance = 0.08f, thin = 0.05f;
+  float spread_share = 0.02f;    // of a joint that is found only with twice the bandwidth, among the votes that no other joint explains
   float one_sided_share = 0.1f;  // of a mirror pair, a side where there is no body is dropped when it gathers less than this share of the
                                  // other side's attention
 };
@@ -54,8 +50,7 @@ struct JointExtraction {
 // - Both sides vote for a mirror pair; theirs throws the predictions of one side away. A pair of which one side has neither attention
 //   nor body becomes one joint (a sword in one hand). Joints within half a bandwidth of the plane are put on it (theirs: 0.02).
 // - When fewer than two modes pass the threshold, the two densest are taken.
-// - Two more searches follow: for joints whose votes are spread along a limb, and for weaker ones of thin parts, far from all others.
-// Empty when no candidate is left. The order of the joints is that of falling density, search by search.
+// Empty when no candidate is left. The order of the joints is that of falling density.
 JointExtraction extract_joints(const JointCandidates& candidates, const geometry::VoxelGrid& voxels, const std::optional<Plane>& symmetry,
                                const JointExtractionOptions& options = {});
 

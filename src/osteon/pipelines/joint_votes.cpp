@@ -69,7 +69,6 @@ JointCandidates joint_votes(const TriangleMesh& mesh, const nets::MeshArrays& gr
       const Vec3f q = shown.positions.raw()[static_cast<std::size_t>(v)] + votes.displacement.row(v).transpose();
       out.positions.push_back(back * frame.undo(q));
       out.attention.push_back(votes.attention(v, 0));
-      out.thickness.push_back(features.thicknesses[VertexId(v)]);
     }
   }
   return out;

@@ -198,7 +198,6 @@ JointCandidates heard(JointCandidates votes, std::size_t vertices, const Ablatio
   if (!ablation.views) {
     votes.positions.resize(vertices);
     votes.attention.resize(vertices);
-    votes.thickness.resize(vertices);
   }
   if (!ablation.attention) std::ranges::fill(votes.attention, 1.0f);
   return votes;

@@ -387,7 +387,8 @@ void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances,
   report.joints = skeleton.size();
   report.coverage = covered_share(distances, kReach);
   if (report.coverage < 0.9f)
-    report.warnings.push_back(fmt::format("{:.0f} % of the character have no bone nearby", 100.0f * (1.0f - report.coverage)));
+    report.warnings.push_back(fmt::format("{:.0f} % of the character have no bone nearby{}", 100.0f * (1.0f - report.coverage),
+                                          options.skeleton ? "" : ": with more detail there may be joints"));
   if (body.symmetry) {
     std::vector<Vec3f> points;
     for (const Vec3f& p : skeleton.rest_positions) points.push_back(body.working.normalization.apply(p));

@@ -75,7 +75,9 @@ double cost(const JointSet& joints, const TreeEvidence& e, const Edges& edges) {
       return 0.5 * (at(a, b) + at(*joints.partner[a], *joints.partner[b]));
     };
     const bool in_plane = joints.partner[a] == a && joints.partner[b] == b;
-    sum += (-std::log(value(e.bone_probability)) + static_cast<double>(TreeOptions{}.outside_penalty) * std::max(0.0, value(e.outside) - 1.0)) * (in_plane ? 0.5 : 1.0);
+    sum += (-std::log(value(e.bone_probability)) +
+            static_cast<double>(TreeOptions{}.outside_penalty) * std::max(0.0, value(e.outside) - 1.0)) *
+           (in_plane ? 0.5 : 1.0);
   }
   return sum;
 }

@@ -165,7 +165,8 @@ void add_spread_joints(JointSet& joints, const Votes& rest, double all, const ge
   const JointSet before = joints;
   options.bandwidth *= 2.0f;
   const float h = options.bandwidth;
-  const auto shifted = mean_shift(rest.positions, rest.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
+  const auto shifted =
+      mean_shift(rest.positions, rest.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
   std::vector<float> shares = kernel_density(shifted, rest.weights, mirror, h);
   for (float& share : shares) share = static_cast<float>(static_cast<double>(share) / all);
   for (const Mode& mode : modes_of(shifted, shares, mirror, h)) {
@@ -182,7 +183,8 @@ JointExtraction extract_from(const Votes& votes, const geometry::VoxelGrid& voxe
   out.bandwidth = options.bandwidth;
   out.inside_used = votes.inside_used;
   const float h = options.bandwidth;
-  const auto shifted = mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
+  const auto shifted =
+      mean_shift(votes.positions, votes.weights, mirror, {.bandwidth = h, .step = options.step, .rest = options.rest}).points;
   std::vector<Mode> modes = modes_of(shifted, density_shares(shifted, votes.weights, mirror, h), mirror, h);
   prune(modes, options.min_share * share_scale(h) * std::sqrt(20.0f / options.expected_joints));
   for (const Mode& mode : modes) add_mode(out.joints, mode, votes, shifted, voxels, mirror, options);

@@ -69,15 +69,22 @@ std::vector<float> vertices_along(const Limb& limb, const Vec3f& joint, bool cou
   return count;
 }
 
-// Per length, at the middle of a cell.
-float smoothed(const std::vector<float>& count, std::size_t cell, float deviation) {
-  const auto tail = static_cast<std::size_t>(std::ceil(kTail * deviation / kCell));
-  float sum = 0.0f;
-  for (std::size_t k = cell - std::min(cell, tail); k <= std::min(cell + tail, count.size() - 1); ++k) {
-    const float z = kCell * (static_cast<float>(k) - static_cast<float>(cell)) / deviation;
-    sum += count[k] * std::exp(-0.5f * z * z);
+// Half of a Gaussian: its density at the middles of the cells, from the middle outwards.
+std::vector<float> bell(float deviation) {
+  std::vector<float> out;
+  for (int k = 0; k <= static_cast<int>(std::ceil(kTail * deviation / kCell)); ++k) {
+    const float z = kCell * static_cast<float>(k) / deviation;
+    out.push_back(std::exp(-0.5f * z * z) / (deviation * std::sqrt(2.0f * std::numbers::pi_v<float>)));
   }
-  return sum / (deviation * std::sqrt(2.0f * std::numbers::pi_v<float>));
+  return out;
+}
+
+// Per length, at the middle of a cell.
+float smoothed(const std::vector<float>& count, std::size_t cell, const std::vector<float>& bell) {
+  float sum = count[cell] * bell[0];
+  for (std::size_t k = 1; k < bell.size(); ++k)
+    sum += ((cell >= k ? count[cell - k] : 0.0f) + (cell + k < count.size() ? count[cell + k] : 0.0f)) * bell[k];
+  return sum;
 }
 
 // How far the joint moves along its limb.
@@ -85,12 +92,13 @@ float shift(const Limb& limb, const Vec3f& joint, bool count_images, std::span<c
   const float extent = kFarthest * options.reach + kTail * options.limb;
   const int half = static_cast<int>(std::ceil(extent / kCell)), cells = 2 * half + 1;
   const std::vector<float> count = vertices_along(limb, joint, count_images, vertices, cells, options.radius);
+  const std::vector<float> loop = bell(options.loop), around = bell(options.limb);
   const float faint = count_images ? 2.0f * options.faint : options.faint;
   float moment = 0.0f, mass = 0.0f;
   for (int k = -static_cast<int>(limb.back / kCell); k <= static_cast<int>(limb.forward / kCell); ++k) {
     const float s = kCell * static_cast<float>(k);
     const auto cell = static_cast<std::size_t>(half + k);
-    const float loops = (smoothed(count, cell, options.loop) + faint) / (smoothed(count, cell, options.limb) + faint);
+    const float loops = (smoothed(count, cell, loop) + faint) / (smoothed(count, cell, around) + faint);
     const float likely = std::exp(-0.5f * s * s / (options.reach * options.reach)) * std::pow(loops, options.trust);
     moment += s * likely;
     mass += likely;

@@ -18,9 +18,10 @@ struct EdgeLoopOptions {
   float shortest_bone = 0.04f;
 };
 
-// Where a body bends, artists put edge loops closer together, and the joint among them: in the training characters a limb has a third more
-// vertices there than 0.03 away. Reducing the mesh for the networks takes these loops away first, as a straight limb is flat along itself.
-// So every joint with a parent and a child straight on, both bones at least `shortest_bone` long, moves along its limb to the mean of
+// Where a body bends, artists put edge loops closer together, and the joint among them: in the training characters a limb has a quarter
+// to a third more vertices there than 0.03 away. Reducing the mesh for the networks takes these loops away first, as a straight limb is
+// flat along itself. So every joint with a parent and a child straight on, both bones at least `shortest_bone` long, moves along its limb
+// to the mean of
 //   exp(-s^2 / 2 reach^2) (n_loop(s) / n_limb(s))^trust,   n_h the density of vertices along the axis, smoothed over h,
 // and never past the middle of its bones. On an evenly triangulated mesh hardly anything moves. Mirror partners count the vertices of both
 // sides and stay mirror images; joints on the plane stay on it. Ours, from no paper.

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "evaluation.h"
 #include "osteon/base/error.h"
@@ -33,8 +34,8 @@ constexpr std::size_t kLeastShown = 10;                    // joints of a bin, t
 // One rig: of a character, or of an object, of which no joint is right.
 struct Case {
   std::string id;
-  std::vector<pipelines::JointEvidence> joints;
-  std::vector<double> right;  // (J) 1 where the joint is one of the reference's
+  std::vector<std::optional<pipelines::JointEvidence>> joints;  // none: a hand's, which no fit is for
+  std::vector<double> right;                                    // (J) 1 where the joint is one of the reference's
   pipelines::CharacterEvidence character{};
   double iou = 0.0;
   std::vector<double> joint_confidence;  // (J) as shipped
@@ -95,7 +96,7 @@ Outcomes joint_outcomes(const std::vector<Case>& cases) {
   Outcomes out;
   for (std::size_t c = 0; c < cases.size(); ++c)
     for (std::size_t j = 0; j < cases[c].joints.size(); ++j)
-      out.push_back({{cases[c].joints[j].begin(), cases[c].joints[j].end()}, cases[c].right[j], c});
+      if (const auto& joint = cases[c].joints[j]) out.push_back({{joint->begin(), joint->end()}, cases[c].right[j], c});
   return out;
 }
 
@@ -122,7 +123,17 @@ std::vector<double> predictions(const LogisticFit& fit, const Outcomes& outcomes
 std::vector<double> attention_of(const std::vector<Case>& cases) {
   std::vector<double> out;
   for (const Case& one : cases)
-    for (const pipelines::JointEvidence& evidence : one.joints) out.push_back(static_cast<double>(evidence[1]));
+    for (const auto& evidence : one.joints)
+      if (evidence) out.push_back(static_cast<double>((*evidence)[1]));
+  return out;
+}
+
+// The confidence in all joints, where `fitted` is that in those that were voted for.
+std::vector<double> and_in_hands(const std::vector<double>& fitted, const std::vector<Case>& cases) {
+  std::vector<double> out;
+  auto next = fitted.begin();
+  for (const Case& one : cases)
+    for (std::size_t j = 0; j < one.joints.size(); ++j) out.push_back(one.joints[j] ? *next++ : one.joint_confidence[j]);
   return out;
 }
 
@@ -203,12 +214,15 @@ nlohmann::json to_json(const Quality& q) {
 // Everything that a fit sees, for other ways to fit.
 nlohmann::json to_json(const std::vector<Case>& cases) {
   nlohmann::json out = nlohmann::json::array();
-  for (const Case& one : cases)
+  for (const Case& one : cases) {
+    nlohmann::json evidence = nlohmann::json::array();
+    for (const auto& joint : one.joints) evidence.push_back(joint ? nlohmann::json(*joint) : nlohmann::json(nullptr));
     out.push_back({{"id", one.id},
                    {"iou", one.iou},
                    {"confidence", one.confidence},
                    {"evidence", one.character},
-                   {"joints", {{"right", one.right}, {"confidence", one.joint_confidence}, {"evidence", one.joints}}}});
+                   {"joints", {{"right", one.right}, {"confidence", one.joint_confidence}, {"evidence", evidence}}}});
+  }
   return out;
 }
 
@@ -275,12 +289,12 @@ Fits fit(const std::vector<Case>& known, const std::vector<Case>& strange, const
   const Outcomes joints = joint_outcomes(known), characters = character_outcomes(known, strange);
   constexpr auto allowed = metrics::Factors::not_negative;  // all of it is evidence for a joint or a character
   const LogisticFit joint_fit = metrics::fit_logistic(joints, allowed), character_fit = metrics::fit_logistic(characters, allowed);
-  const std::vector<double> joint_values = metrics::cross_validated(joints, allowed);
+  const std::vector<double> joint_values = and_in_hands(metrics::cross_validated(joints, allowed), known);
   const std::vector<double> confidence = products(known, metrics::cross_validated(characters, allowed), joint_values);
-  const std::vector<double> of_objects =
-      products(unseen, predictions(character_fit, character_outcomes({}, unseen)), predictions(joint_fit, joint_outcomes(unseen)));
+  const std::vector<double> of_objects = products(unseen, predictions(character_fit, character_outcomes({}, unseen)),
+                                                  and_in_hands(predictions(joint_fit, joint_outcomes(unseen)), unseen));
   const std::vector<double> shipped =
-      products(known, predictions(character_fit, character_outcomes(known, {})), predictions(joint_fit, joints));
+      products(known, predictions(character_fit, character_outcomes(known, {})), and_in_hands(predictions(joint_fit, joints), known));
   const double threshold = std::floor(1000.0 * kMargin * std::ranges::min(shipped)) / 1000.0;
   return {joint_fit, character_fit, quality_of(known, joint_values, confidence, of_objects, threshold)};
 }

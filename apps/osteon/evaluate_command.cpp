@@ -207,12 +207,16 @@ void write_json(const std::filesystem::path& path, const Tables& tables) {
 }
 
 // What a study leaves out, by name.
-const std::map<std::string, std::function<void(pipelines::RignetOptions&)>> kParts{
-    {"attention", [](auto& o) { o.ablation.attention = false; }},   {"views", [](auto& o) { o.ablation.views = false; }},
-    {"spread", [](auto& o) { o.extraction.spread_share = 2.0f; }},  {"symmetry", [](auto& o) { o.symmetry = pipelines::Symmetry::off; }},
-    {"edge-loops", [](auto& o) { o.ablation.edge_loops = false; }}, {"bone-network", [](auto& o) { o.ablation.bone_network = false; }},
-    {"geodesic", [](auto& o) { o.ablation.geodesic = false; }},     {"neuroskinning", [](auto& o) { o.ablation.neuroskinning = 0.0f; }},
-    {"islands", [](auto& o) { o.skin.rigid_islands = false; }}};
+const std::map<std::string, std::function<void(pipelines::RignetOptions&)>> kParts{{"attention", [](auto& o) { o.ablation.attention = false; }},
+                                                                                   {"views", [](auto& o) { o.ablation.views = false; }},
+                                                                                   {"spread", [](auto& o) { o.extraction.spread_share = 2.0f; }},
+                                                                                   {"symmetry", [](auto& o) { o.symmetry = pipelines::Symmetry::off; }},
+                                                                                   {"fingers", [](auto& o) { o.fingers = pipelines::Fingers::off; }},
+                                                                                   {"edge-loops", [](auto& o) { o.ablation.edge_loops = false; }},
+                                                                                   {"bone-network", [](auto& o) { o.ablation.bone_network = false; }},
+                                                                                   {"geodesic", [](auto& o) { o.ablation.geodesic = false; }},
+                                                                                   {"neuroskinning", [](auto& o) { o.ablation.neuroskinning = 0.0f; }},
+                                                                                   {"islands", [](auto& o) { o.skin.rigid_islands = false; }}};
 
 void measure(const EvaluateArguments& arguments) {
   const Tables tables = arguments.data.empty() ? compare_files(arguments) : evaluate_split(arguments);

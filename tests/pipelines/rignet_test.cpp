@@ -7,6 +7,7 @@
 #include "osteon/base/parallel.h"
 #include "osteon/geometry/mirror_pairs.h"
 #include "osteon/mesh/shapes.h"
+#include "osteon/pipelines/hands.h"
 #include "osteon/rig/rig.h"
 #include "osteon/synth/character.h"
 #include "untrained.h"
@@ -234,7 +235,8 @@ TEST(RigCharacter, every_joint_has_a_confidence) {
   const RignetResult& result = rigged_figure();
   ASSERT_EQ(result.report.joint_confidence.size(), result.skeleton.size());
   for (std::size_t j = 0; j < result.joint_evidence.size(); ++j)
-    EXPECT_EQ(result.report.joint_confidence[j], joint_confidence(result.joint_evidence[j]));
+    EXPECT_EQ(result.report.joint_confidence[j],
+              result.joint_evidence[j] ? joint_confidence(*result.joint_evidence[j]) : kHandConfidence);
   EXPECT_EQ(result.report.character, character_probability(result.character_evidence));
   EXPECT_LE(result.report.confidence, *result.report.character);
 }

@@ -16,8 +16,9 @@ constexpr float kMiddle = 0.02f, kArmLength = 0.15f, kDownwards = 0.05f;
 
 class Namer {
  public:
-  Namer(const Skeleton& skeleton, const PerJoint<std::optional<JointId>>& partner)
+  Namer(const Skeleton& skeleton, const PerJoint<std::optional<JointId>>& partner, const PerJoint<std::optional<HandPart>>& part)
       : s_(skeleton),
+        part_(part),
         kids_(children(skeleton)),
         sides_(skeleton.size()),
         descendants_(skeleton.size()),
@@ -49,9 +50,11 @@ class Namer {
     std::optional<JointId> best;
     const auto rank = [&](JointId k) { return std::tuple(descendants_[k], (s_.rest_positions[k] - s_.rest_positions[j]).squaredNorm()); };
     for (JointId kid : kids_[j])
-      if (sides_[kid] == sides_[j] && (!best || rank(kid) > rank(*best))) best = kid;
+      if (sides_[kid] == sides_[j] && part_at(kid) == part_at(j) && (!best || rank(kid) > rank(*best))) best = kid;
     return best;
   }
+
+  std::optional<HandPart> part_at(JointId j) const { return part_.empty() ? std::nullopt : part_[j]; }
 
   JointId tip(JointId j) const {
     while (const auto next = continuation(j)) j = *next;
@@ -76,9 +79,10 @@ class Namer {
   std::string kind(JointId first) const {
     const JointId parent = *s_.parents[first];
     const Vec3f end = s_.rest_positions[tip(first)];
+    const std::string side = sides_[first] == Side::left ? "left" : sides_[first] == Side::right ? "right" : "centre";
+    if (const auto part = part_at(first)) return fmt::format("{}_{}", side, kHandPartNames[static_cast<std::size_t>(*part)]);
     if (sides_[first] == Side::middle && sides_[parent] == Side::middle)
       return first == spine_ ? "spine" : backwards(course(first)) ? "tail" : "centre";
-    const std::string side = sides_[first] == Side::left ? "left" : sides_[first] == Side::right ? "right" : "centre";
     if (sides_[parent] != Side::middle && parent != JointId{0}) return (chains_[parent].empty() ? side : chains_[parent]) + "_branch";
     const float height = box_.max().y() - box_.min().y();
     if (end.y() <= box_.min().y() + 0.25f * height && end.y() < s_.rest_positions[parent].y() - kDownwards) return side + "_leg";
@@ -92,12 +96,13 @@ class Namer {
     const std::string chain = ordinal == 1 ? base : fmt::format("{}{}", base, ordinal);
     int number = 0;
     for (std::optional<JointId> j = first; j; j = continuation(*j)) {
-      names_[*j] = fmt::format("{}_{}", chain, ++number);
+      names_[*j] = part_at(*j) == HandPart::wrist ? chain : fmt::format("{}_{}", chain, ++number);
       chains_[*j] = chain;
     }
   }
 
   const Skeleton& s_;
+  const PerJoint<std::optional<HandPart>>& part_;
   PerJoint<std::vector<JointId>> kids_;
   PerJoint<Side> sides_;
   PerJoint<int> descendants_;
@@ -109,8 +114,9 @@ class Namer {
 
 }  // namespace
 
-PerJoint<std::string> joint_names(const Skeleton& skeleton, const PerJoint<std::optional<JointId>>& partner) {
-  return Namer(skeleton, partner).run();
+PerJoint<std::string> joint_names(const Skeleton& skeleton, const PerJoint<std::optional<JointId>>& partner,
+                                  const PerJoint<std::optional<HandPart>>& part) {
+  return Namer(skeleton, partner, part).run();
 }
 
 }  // namespace osteon::pipelines

@@ -19,6 +19,7 @@
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/pipelines/edge_loops.h"
+#include "osteon/pipelines/hands.h"
 #include "osteon/pipelines/joint_votes.h"
 #include "osteon/pipelines/mirrored_skin.h"
 #include "osteon/pipelines/neuroskinning.h"
@@ -32,7 +33,9 @@ constexpr float kGeometricShare = 0.5f;          // in NeuroSkinning's part of t
 // With z up, so much more of the attention points at a joint and so much surer is the rig than with y up, where only this tells the axis:
 // on the validation characters, shown as if nothing else told it, that finds z in 12 of 26, and none that is y up is taken for z.
 constexpr float kClearer = 0.08f, kSurer = 0.05f;
-constexpr float kReach = 0.2f;  // a vertex farther than this from all bones is not covered
+constexpr float kHandDetail = 0.4f;        // coarser rigs have no fingers,
+constexpr std::size_t kJointsOfBody = 15;  // nor those of which so few joints would be left for the body
+constexpr float kReach = 0.2f;             // a vertex farther than this from all bones is not covered
 
 // Runs the stages one after the other: tells the progress, and notes how long each took.
 class Stages {
@@ -123,11 +126,12 @@ Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stage
   return body;
 }
 
-JointExtraction find_joints(const JointCandidates& seen, float expected, const Body& body, const RignetOptions& options) {
+JointExtraction find_joints(const JointCandidates& seen, float expected, std::optional<std::size_t> count, const Body& body,
+                            const RignetOptions& options) {
   JointExtractionOptions extraction = options.extraction;
   extraction.expected_joints = expected;
   if (body.pairs) extraction.one_sided_share = 0.0f;  // where nothing is one-sided, all pairs stay
-  if (options.joints) return extract_joint_count(seen, body.voxels, body.symmetry, *options.joints, extraction);
+  if (count) return extract_joint_count(seen, body.voxels, body.symmetry, *count, extraction);
   extraction.bandwidth = options.bandwidth.value_or(bandwidth_of_detail(options.detail));
   return extract_joints(seen, body.voxels, body.symmetry, extraction);
 }
@@ -212,33 +216,68 @@ Skeleton single_joint(const Body& body) {
   return skeleton;
 }
 
-void warn_about_joints(const JointExtraction& found, const RignetOptions& options, std::vector<std::string>& warnings) {
-  if (found.joints.size() == 0) warnings.push_back("no joints were found: the rig is a single joint in the middle");
+void warn_about_joints(const JointExtraction& found, std::size_t joints, const RignetOptions& options, std::vector<std::string>& warnings) {
+  if (joints == 0) warnings.push_back("no joints were found: the rig is a single joint in the middle");
   if (!found.inside_used) warnings.push_back("the mesh encloses hardly any volume: joints may lie outside of it");
-  if (options.joints && found.joints.size() != *options.joints)
-    warnings.push_back(fmt::format("{} joints were asked for; the nearest that was found is {}", *options.joints, found.joints.size()));
+  if (options.joints && joints != *options.joints)
+    warnings.push_back(fmt::format("{} joints were asked for; the nearest that was found is {}", *options.joints, joints));
 }
 
-// How far the joints and the skeleton can be trusted. The joints of `result` are in the order of `from`.
-void judge(const JointCandidates& seen, const JointExtraction& found, const PerJoint<std::size_t>& from, const Body& body,
+// How far the joints and the skeleton can be trusted. `from`: for each joint of the result the one that was found; none: a hand's.
+void judge(const JointCandidates& seen, const JointExtraction& found, const PerJoint<std::optional<std::size_t>>& from, const Body& body,
            RignetResult& result) {
   const std::vector<JointEvidence> evidence = joint_evidence(seen, found.joints, body.working.mesh);
+  std::vector<JointEvidence> of_body;
   RigReport& report = result.report;
-  for (std::size_t joint : from) {
-    result.joint_evidence.push_back(evidence[joint]);
-    report.joint_confidence.push_back(joint_confidence(evidence[joint]));
+  for (const auto& joint : from) {
+    result.joint_evidence.push_back(joint ? std::optional(evidence[*joint]) : std::nullopt);
+    report.joint_confidence.push_back(joint ? joint_confidence(evidence[*joint]) : kHandConfidence);
+    if (joint) of_body.push_back(evidence[*joint]);
   }
-  result.character_evidence = character_evidence(result.joint_evidence, found.explained, *report.bone_confidence);
+  result.character_evidence = character_evidence(of_body, found.explained, *report.bone_confidence);
   report.character = character_probability(result.character_evidence);
   const auto& joints = report.joint_confidence;
   report.confidence = *report.character * std::accumulate(joints.begin(), joints.end(), 0.0f) / static_cast<float>(joints.size());
 }
 
-// Normalised; those that the reduction took away are among them.
-std::vector<Vec3f> original_vertices(const Body& body) {
-  std::vector<Vec3f> out;
-  for (const Vec3f& p : body.working.clean.mesh.positions) out.push_back(body.working.normalization.apply(p));
+// Normalised, and not reduced.
+TriangleMesh original_mesh(const Body& body) {
+  TriangleMesh out = body.working.clean.mesh;
+  for (Vec3f& p : out.positions) p = body.working.normalization.apply(p);
   return out;
+}
+
+// Joints, connected and in their places, and those of the hands.
+struct Grown {
+  JointExtraction found;
+  SkeletonWithHands skeleton;  // without joints where none were found
+};
+
+Grown grow(const JointCandidates& seen, float wanted, std::optional<std::size_t> count, bool hands, const Body& body,
+           const infer::RignetModels& models, const RignetOptions& options, Stages& stages) {
+  Grown out{stages.run("joints", [&] { return find_joints(seen, wanted, count, body, options); }), {}};
+  if (out.found.joints.size() == 0) return out;
+  const JointSet& found = out.found.joints;
+  const TreeEvidence known = stages.run("connectivity networks", [&] { return evidence(found, body, models, options.ablation); });
+  const JointTree tree = stages.run("tree", [&] { return connect(found, known, options.tree); });
+  const TriangleMesh mesh = original_mesh(body);
+  const JointSet joints = options.ablation.edge_loops
+                              ? stages.run("edge loops", [&] { return drawn_to_edge_loops(found, tree, mesh.positions.raw()); })
+                              : found;
+  out.skeleton =
+      hands ? stages.run("hands", [&] { return with_hands(joints, tree, mesh, body.pairs.has_value()); }) : without_hands(joints, tree);
+  return out;
+}
+
+// Where a number of joints is asked for, hands are among them if enough are left for the body.
+Grown grow_to_count(const JointCandidates& seen, float wanted, const Body& body, const infer::RignetModels& models,
+                    const RignetOptions& options, Stages& stages) {
+  const bool hands = options.fingers == Fingers::automatic && options.detail >= kHandDetail;
+  Grown first = grow(seen, wanted, options.joints, hands, body, models, options, stages);
+  const auto of_hands = static_cast<std::size_t>(std::ranges::count_if(first.skeleton.part, [](const auto& f) { return f.has_value(); }));
+  if (!options.joints || of_hands == 0) return first;
+  const bool enough = *options.joints >= of_hands + kJointsOfBody;
+  return grow(seen, wanted, enough ? *options.joints - of_hands : *options.joints, enough, body, models, options, stages);
 }
 
 // In the body's frame, in the unit of the mesh.
@@ -249,20 +288,17 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
   const JointCandidates seen = stages.run("joint networks", [&] {
     return heard(joint_votes(body.working.mesh, body.graph, body.regions, models, wanted), body.positions().size(), options.ablation);
   });
-  const JointExtraction found = stages.run("joints", [&] { return find_joints(seen, wanted, body, options); });
-  warn_about_joints(found, options, report.warnings);
+  const auto [found, grown] = grow_to_count(seen, wanted, body, models, options, stages);
+  warn_about_joints(found, grown.joints.size(), options, report.warnings);
   report.bandwidth = found.bandwidth;
   report.explained = found.explained;
   report.bone_confidence = report.character = 0.0f;
-  if (found.joints.size() == 0) return single_joint(body);
-  const TreeEvidence known = stages.run("connectivity networks", [&] { return evidence(found.joints, body, models, options.ablation); });
-  const JointTree tree = stages.run("tree", [&] { return connect(found.joints, known, options.tree); });
-  report.bone_confidence = tree.likelihood;
-  const JointSet joints = options.ablation.edge_loops
-                              ? stages.run("edge loops", [&] { return drawn_to_edge_loops(found.joints, tree, original_vertices(body)); })
-                              : found.joints;
-  TreeSkeleton made = make_skeleton(joints, tree, body.working.normalization, body.frame.is_seen_from_behind);
-  judge(seen, found, made.from, body, result);
+  if (grown.joints.size() == 0) return single_joint(body);
+  report.bone_confidence = grown.tree.likelihood;
+  TreeSkeleton made = make_skeleton(grown.joints, grown.tree, body.working.normalization, body.frame.is_seen_from_behind, grown.part);
+  PerJoint<std::optional<std::size_t>> from;
+  for (std::size_t joint : made.from) from.push_back(grown.from[joint]);
+  judge(seen, found, from, body, result);
   return std::move(made.skeleton);
 }
 

@@ -18,6 +18,7 @@
 namespace osteon::pipelines {
 
 enum class Symmetry { automatic, off };
+enum class Fingers { automatic, off };  // automatic: where hands have them (hands.h), at `detail` 0.4 and more
 
 // Parts of the method that can be left out, to see what each is good for (docs/results.md).
 struct Ablation {
@@ -35,6 +36,7 @@ struct RignetOptions {
   float detail = 0.5f;                     // 0 (few joints) .. 1 (many)
   std::optional<std::size_t> joints = {};  // about this many: the bandwidth is searched, and the two above are not read
   Symmetry symmetry = Symmetry::automatic;
+  Fingers fingers = Fingers::automatic;
   Up up = Up::automatic;
   std::optional<Skeleton> skeleton = {};  // use this one, in the mesh's world coordinates, and only skin it
   geometry::WorkingMeshOptions working_mesh = {};
@@ -48,13 +50,14 @@ struct RignetResult {
   Skeleton skeleton;    // world space of the mesh; the given one, unchanged, where one was given
   SkinWeights weights;  // one row per vertex of the mesh that was given, in its order
   RigReport report;
-  std::vector<JointEvidence> joint_evidence;  // (J) what the joints' confidence in the report follows from; empty: skeleton given
+  // (J) what the joints' confidence in the report follows from; none: a hand's; empty: skeleton given
+  std::vector<std::optional<JointEvidence>> joint_evidence;
   CharacterEvidence character_evidence = {};  // and the probability of a character
 };
 
 // The whole of RigNet: Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
 // mesh -> its own frame (body_frame.h) -> clean working mesh -> displacement and attention -> joints -> tree -> joints drawn to edge loops
-// (edge_loops.h) -> skin -> weights on the mesh that was given.
+// (edge_loops.h) -> hands (hands.h) -> skin -> weights on the mesh that was given.
 // The rig is always valid: where the networks find no joints it is a single one in the middle, with confidence 0 and a warning.
 // The same for any order of vertices and faces (weights follow their vertices) and any number of threads.
 // The same, turned, for a mesh turned by right angles about the up axis, or that stands on z = 0 instead of y = 0. Where it stands on

@@ -170,7 +170,7 @@ JointTree connect(const JointSet& joints, const TreeEvidence& evidence, const Tr
 }
 
 TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const geometry::Normalization& normalization,
-                           bool is_seen_from_behind) {
+                           bool is_seen_from_behind, std::span<const std::optional<HandPart>> parts) {
   const Eigen::Matrix3f to_front = geometry::turn_to_front(is_seen_from_behind ? Vec3f(0, 0, -1) : Vec3f(0, 0, 1));
   std::vector<std::vector<std::size_t>> kids(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j)
@@ -186,11 +186,13 @@ TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const 
     out.from.push_back(j);
     open.insert(open.end(), kids[j].rbegin(), kids[j].rend());
   }
-  out.skeleton.names = joint_names(out.skeleton, [&] {
-    PerJoint<std::optional<JointId>> partner;
-    for (std::size_t j : out.from) partner.push_back(joints.partner[j] ? std::optional(id_of[*joints.partner[j]]) : std::nullopt);
-    return partner;
-  }());
+  PerJoint<std::optional<JointId>> partner;
+  PerJoint<std::optional<HandPart>> part;
+  for (std::size_t j : out.from) {
+    partner.push_back(joints.partner[j] ? std::optional(id_of[*joints.partner[j]]) : std::nullopt);
+    if (!parts.empty()) part.push_back(parts[j]);
+  }
+  out.skeleton.names = joint_names(out.skeleton, partner, part);
   for (JointId j : out.from.ids())
     out.skeleton.rest_positions[j] = to_front * normalization.undo(joints.frame.from(joints.positions[out.from[j]]));
   orient_along_bones(out.skeleton);

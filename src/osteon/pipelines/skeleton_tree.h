@@ -6,6 +6,7 @@
 
 #include "osteon/geometry/voxel_grid.h"
 #include "osteon/geometry/working_mesh.h"
+#include "osteon/pipelines/joint_names.h"
 #include "osteon/pipelines/joint_set.h"
 #include "osteon/rig/skeleton.h"
 
@@ -42,12 +43,13 @@ struct JointTree {
 JointTree connect(const JointSet& joints, const TreeEvidence& evidence, const TreeOptions& options = {});
 
 // In the unit and frame that `normalization` undoes to: depth first from the root, in the order of the joint set; named (joint_names.h) and
-// oriented along the bones, as one sees the character from its front, which is +z, or -z where `is_seen_from_behind`.
+// oriented along the bones, as one sees the character from its front, which is +z, or -z where `is_seen_from_behind`. `parts`: what
+// joint it is, in the order of the joint set; empty: of none.
 struct TreeSkeleton {
   Skeleton skeleton;
   PerJoint<std::size_t> from;  // skeleton joint -> index in the joint set
 };
 TreeSkeleton make_skeleton(const JointSet& joints, const JointTree& tree, const geometry::Normalization& normalization,
-                           bool is_seen_from_behind = false);
+                           bool is_seen_from_behind = false, std::span<const std::optional<HandPart>> parts = {});
 
 }  // namespace osteon::pipelines

@@ -55,14 +55,14 @@ struct Coarse {
   }
 };
 
-std::vector<std::size_t> joints_of(const SkeletonWithHands& s, HandPart part) {
+std::vector<std::size_t> joints_of(const SkeletonDraft& s, HandPart part) {
   std::vector<std::size_t> out;
   for (std::size_t j = 0; j < s.part.size(); ++j)
     if (s.part[j] == part) out.push_back(j);
   return out;
 }
 
-void expect_a_tree(const SkeletonWithHands& s) {
+void expect_a_tree(const SkeletonDraft& s) {
   ASSERT_EQ(s.tree.parents.size(), s.joints.size());
   ASSERT_EQ(s.joints.partner.size(), s.joints.size());
   ASSERT_EQ(s.from.size(), s.joints.size());
@@ -77,7 +77,7 @@ void expect_a_tree(const SkeletonWithHands& s) {
 
 TEST(Hands, take_the_place_of_the_joints_within_them) {
   const Coarse coarse(fingered());
-  const SkeletonWithHands s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
+  const SkeletonDraft s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
   expect_a_tree(s);
   EXPECT_EQ(s.joints.size(), coarse.joints.size() - 2 + 2 * (1 + 4 * 3));
   for (const char* palm : {"LeftPalm", "RightPalm"}) EXPECT_EQ(std::ranges::count(s.from, std::optional(coarse.named.at(palm))), 0);
@@ -96,7 +96,7 @@ TEST(Hands, take_the_place_of_the_joints_within_them) {
 
 TEST(Hands, are_exact_mirror_images_left_first) {
   const Coarse coarse(fingered());
-  const SkeletonWithHands s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
+  const SkeletonDraft s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
   for (std::size_t j = 0; j < s.joints.size(); ++j) {
     if (!s.part[j]) continue;
     ASSERT_TRUE(s.joints.partner[j]);
@@ -109,7 +109,7 @@ TEST(Hands, are_exact_mirror_images_left_first) {
 
 TEST(Hands, without_symmetry_each_is_found_by_itself) {
   const Coarse coarse(fingered(), false);
-  const SkeletonWithHands s = with_hands(coarse.joints, coarse.tree, fingered().mesh, false);
+  const SkeletonDraft s = with_hands(coarse.joints, coarse.tree, fingered().mesh, false);
   expect_a_tree(s);
   EXPECT_EQ(joints_of(s, HandPart::wrist).size(), 2u);
   EXPECT_EQ(joints_of(s, HandPart::index).size(), 6u);
@@ -124,7 +124,7 @@ TEST(Hands, a_hand_on_one_side_only_has_no_partner_unless_the_surface_is_its_ima
   for (const Triangle& face : one_handed.faces)
     if (std::ranges::all_of(face, [&](VertexId v) { return one_handed.positions[v].x() > wrist; })) kept.push_back(face);
   one_handed.faces = PerFace<Triangle>(kept);
-  const SkeletonWithHands one = with_hands(coarse.joints, coarse.tree, one_handed, false),
+  const SkeletonDraft one = with_hands(coarse.joints, coarse.tree, one_handed, false),
                           both = with_hands(coarse.joints, coarse.tree, one_handed, true);
   expect_a_tree(one);
   ASSERT_EQ(joints_of(one, HandPart::wrist).size(), 1u);
@@ -136,7 +136,7 @@ TEST(Hands, a_hand_on_one_side_only_has_no_partner_unless_the_surface_is_its_ima
 TEST(Hands, what_a_hand_holds_hangs_on_it) {
   Coarse coarse(fingered());
   coarse.add(fingered().at("LeftHandMiddle") + Vec3f(0.2f, 0.2f, 0), "LeftPalm");  // the end of a sword
-  const SkeletonWithHands s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
+  const SkeletonDraft s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
   expect_a_tree(s);
   ASSERT_EQ(joints_of(s, HandPart::wrist).size(), 2u);
   const auto sword = std::ranges::find(s.from, std::optional(coarse.joints.size() - 1)) - s.from.begin();
@@ -146,8 +146,8 @@ TEST(Hands, what_a_hand_holds_hangs_on_it) {
 TEST(Hands, where_there_are_none_nothing_changes) {
   const FigureWithHands mitten = test::figure_with_hands(0, 1, 160);
   Coarse coarse(fingered());
-  for (const SkeletonWithHands& s :
-       {with_hands(coarse.joints, coarse.tree, mitten.mesh, true), without_hands(coarse.joints, coarse.tree)}) {
+  for (const SkeletonDraft& s :
+       {with_hands(coarse.joints, coarse.tree, mitten.mesh, true), SkeletonDraft::of(coarse.joints, coarse.tree)}) {
     EXPECT_EQ(s.joints.positions, coarse.joints.positions);
     EXPECT_EQ(s.joints.partner, coarse.joints.partner);
     EXPECT_EQ(s.tree.parents, coarse.tree.parents);
@@ -157,7 +157,7 @@ TEST(Hands, where_there_are_none_nothing_changes) {
 
 TEST(Hands, their_joints_are_named_by_their_part) {
   const Coarse coarse(fingered());
-  const SkeletonWithHands s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
+  const SkeletonDraft s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
   const TreeSkeleton made = make_skeleton(s.joints, s.tree, {1.0f, Vec3f::Zero()}, false, s.part);
   validate(made.skeleton);
   for (JointId j : made.skeleton.names.ids()) {

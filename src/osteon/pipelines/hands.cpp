@@ -151,7 +151,7 @@ class Builder {
     for (std::size_t h = 0; h < hands.size(); ++h) add(h);
   }
 
-  SkeletonWithHands run() && { return std::move(out_); }
+  SkeletonDraft run() && { return std::move(out_); }
 
  private:
   // A joint on both sides of the body, and those of the right hand; of no pair: itself.
@@ -244,12 +244,12 @@ class Builder {
   const std::vector<Hand>& hands_;
   std::vector<std::optional<std::size_t>> hand_of_;  // of each joint before: the hand that takes its place
   std::vector<std::optional<std::size_t>> number_;   // or its number now
-  SkeletonWithHands out_;
+  SkeletonDraft out_;
 };
 
 }  // namespace
 
-SkeletonWithHands with_hands(const JointSet& joints, const JointTree& tree, const TriangleMesh& mesh, bool is_image) {
+SkeletonDraft with_hands(const JointSet& joints, const JointTree& tree, const TriangleMesh& mesh, bool is_image) {
   TriangleMesh seen = mesh;
   for (Vec3f& p : seen.positions) p = joints.frame.to(p);
   std::vector<Hand> hands = find_hands(joints, tree, seen);
@@ -257,7 +257,5 @@ SkeletonWithHands with_hands(const JointSet& joints, const JointTree& tree, cons
   if (is_symmetric) hands = paired(std::move(hands), joints, is_image);
   return Builder(joints, tree, hands).run();
 }
-
-SkeletonWithHands without_hands(const JointSet& joints, const JointTree& tree) { return Builder(joints, tree, {}).run(); }
 
 }  // namespace osteon::pipelines

@@ -1,22 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <optional>
-#include <vector>
-
 #include "osteon/mesh/triangle_mesh.h"
-#include "osteon/pipelines/skeleton_tree.h"
+#include "osteon/pipelines/skeleton_draft.h"
 
 namespace osteon::pipelines {
-
-// A skeleton with the joints of its hands.
-struct SkeletonWithHands {
-  JointSet joints;
-  JointTree tree;
-  std::vector<std::optional<std::size_t>> from;  // (J) the number that a joint had before; none: a hand's
-  std::vector<std::optional<HandPart>> part;     // (J) what it is of a hand
-};
 
 // The share of the hands' joints that are right, as with joint_confidence (on `val`).
 constexpr float kHandConfidence = 0.88f;
@@ -27,8 +15,6 @@ constexpr float kHandConfidence = 0.88f;
 // Of mirror images both hands get the mean, or the one that is seen as far as its wrist, or has more fingers; if only one side has a hand,
 // so does the other where `is_image` says that the surface is its own mirror image, else that hand has no partner. `mesh`: before it was
 // reduced, in the normalised frame. Pre: as of connect(); `tree` is of `joints`.
-SkeletonWithHands with_hands(const JointSet& joints, const JointTree& tree, const TriangleMesh& mesh, bool is_image);
-
-SkeletonWithHands without_hands(const JointSet& joints, const JointTree& tree);  // the same in that form
+SkeletonDraft with_hands(const JointSet& joints, const JointTree& tree, const TriangleMesh& mesh, bool is_image);
 
 }  // namespace osteon::pipelines

@@ -247,10 +247,18 @@ TriangleMesh original_mesh(const Body& body) {
   return out;
 }
 
+// All but the hands' joints, which are in their places.
+JointSet drawn_to_edge_loops(const SkeletonDraft& draft, std::span<const Vec3f> vertices) {
+  JointSet out = pipelines::drawn_to_edge_loops(draft.joints, draft.tree, vertices);
+  for (std::size_t j = 0; j < out.size(); ++j)
+    if (draft.part[j]) out.positions[j] = draft.joints.positions[j];
+  return out;
+}
+
 // Joints, connected and in their places, and those of the hands.
 struct Grown {
   JointExtraction found;
-  SkeletonWithHands skeleton;  // without joints where none were found
+  SkeletonDraft skeleton;  // without joints where none were found
 };
 
 Grown grow(const JointCandidates& seen, float wanted, std::optional<std::size_t> count, bool hands, const Body& body,
@@ -261,11 +269,11 @@ Grown grow(const JointCandidates& seen, float wanted, std::optional<std::size_t>
   const TreeEvidence known = stages.run("connectivity networks", [&] { return evidence(found, body, models, options.ablation); });
   const JointTree tree = stages.run("tree", [&] { return connect(found, known, options.tree); });
   const TriangleMesh mesh = original_mesh(body);
-  const JointSet joints = options.ablation.edge_loops
-                              ? stages.run("edge loops", [&] { return drawn_to_edge_loops(found, tree, mesh.positions.raw()); })
-                              : found;
-  out.skeleton =
-      hands ? stages.run("hands", [&] { return with_hands(joints, tree, mesh, body.pairs.has_value()); }) : without_hands(joints, tree);
+  SkeletonDraft& draft = out.skeleton;
+  draft = SkeletonDraft::of(found, tree);
+  if (hands) draft = stages.run("hands", [&] { return with_hands(found, tree, mesh, body.pairs.has_value()); });
+  if (options.ablation.edge_loops)
+    draft.joints = stages.run("edge loops", [&] { return drawn_to_edge_loops(draft, mesh.positions.raw()); });
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "figure_with_hands.h"
 #include "osteon/base/parallel.h"
 #include "osteon/geometry/mirror_pairs.h"
 #include "osteon/mesh/shapes.h"
@@ -231,12 +232,34 @@ TEST(RigCharacter, a_given_skeleton_is_kept_and_skinned) {
   EXPECT_EQ(result.report.confidence, result.report.coverage);
 }
 
+TEST(RigCharacter, joints_finer_than_the_working_mesh_are_skinned_on_a_finer_one) {
+  const test::FigureWithHands figure = test::figure_with_hands(4, 1, 200);
+  ASSERT_GE(figure.skeleton.size(), 40u);
+  Skeleton coarse;  // without hands
+  for (JointId j : figure.skeleton.names.ids()) {
+    const std::string& name = figure.skeleton.names[j];
+    if (name.find("Hand") != std::string::npos) continue;
+    const auto parent = figure.skeleton.parents[j];
+    const auto& names = coarse.names.raw();
+    coarse.add(name,
+               parent ? std::optional(
+                            JointId(static_cast<std::uint16_t>(std::ranges::find(names, figure.skeleton.names[*parent]) - names.begin())))
+                      : std::nullopt,
+               figure.skeleton.rest_positions[j]);
+  }
+  const auto working_meshes = [&](const Skeleton& skeleton) {
+    const RignetResult result = rig_character(figure.mesh, untrained(), {.skeleton = skeleton});
+    expect_usable(figure.mesh, result);
+    return std::ranges::count(result.report.stages, "working mesh", &StageTime::stage);
+  };
+  EXPECT_EQ(working_meshes(figure.skeleton), working_meshes(coarse) + 1);
+}
+
 TEST(RigCharacter, every_joint_has_a_confidence) {
   const RignetResult& result = rigged_figure();
   ASSERT_EQ(result.report.joint_confidence.size(), result.skeleton.size());
   for (std::size_t j = 0; j < result.joint_evidence.size(); ++j)
-    EXPECT_EQ(result.report.joint_confidence[j],
-              result.joint_evidence[j] ? joint_confidence(*result.joint_evidence[j]) : kHandConfidence);
+    EXPECT_EQ(result.report.joint_confidence[j], result.joint_evidence[j] ? joint_confidence(*result.joint_evidence[j]) : kHandConfidence);
   EXPECT_EQ(result.report.character, character_probability(result.character_evidence));
   EXPECT_LE(result.report.confidence, *result.report.character);
 }

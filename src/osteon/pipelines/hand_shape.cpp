@@ -44,6 +44,7 @@ struct Axis {
   float length = 0.0f, wide = 0.0f, narrow = 0.0f;  // half widths
   float web = 0.0f;                                 // how far along the surface it begins
   std::size_t vertices = 0;
+  std::size_t straight = 0;  // the place from which it is continued: the last before the web widens it
 
   Vec3f at(float place) const {
     if (place >= places.back()) return middles[straight] + (place - places[straight]) * inwards;
@@ -51,7 +52,6 @@ struct Axis {
     const float part = (place - places[after - 1]) / (places[after] - places[after - 1]);
     return middles[after - 1] + part * (middles[after] - middles[after - 1]);
   }
-  std::size_t straight = 0;  // the place from which it is continued: the last before the web widens it
 };
 
 TriangleMesh around(const TriangleMesh& mesh, const Vec3f& middle) {

@@ -35,6 +35,7 @@ constexpr float kGeometricShare = 0.5f;          // in NeuroSkinning's part of t
 constexpr float kClearer = 0.08f, kSurer = 0.05f;
 constexpr float kHandDetail = 0.4f;        // coarser rigs have no fingers,
 constexpr std::size_t kJointsOfBody = 15;  // nor those of which so few joints would be left for the body
+constexpr int kCountRounds = 4;            // to a number of joints that is asked for
 // Where so many joints have fewer vertices of the working mesh to themselves, the skin is found on a finer one: on training and validation
 // characters that have (all with fingers) L1 falls by a tenth to a third, with as many joints elsewhere it does not.
 constexpr std::size_t kManyJoints = 20, kFewVertices = 4, kFineVertices = 4000;
@@ -293,15 +294,23 @@ Grown grow(const JointCandidates& seen, float wanted, std::optional<std::size_t>
   return out;
 }
 
-// Where a number of joints is asked for, hands are among them if enough are left for the body.
+// Where a number of joints is asked for, hands are among them if enough are left for the body. How many of its joints they take the
+// place of is known afterwards only.
 Grown grow_to_count(const JointCandidates& seen, float wanted, const Body& body, const infer::RignetModels& models,
                     const RignetOptions& options, Stages& stages) {
   const bool hands = options.fingers == Fingers::automatic && options.detail >= kHandDetail;
-  Grown first = grow(seen, wanted, options.joints, hands, body, models, options, stages);
-  const auto of_hands = static_cast<std::size_t>(std::ranges::count_if(first.skeleton.part, [](const auto& f) { return f.has_value(); }));
-  if (!options.joints || of_hands == 0) return first;
-  const bool enough = *options.joints >= of_hands + kJointsOfBody;
-  return grow(seen, wanted, enough ? *options.joints - of_hands : *options.joints, enough, body, models, options, stages);
+  Grown grown = grow(seen, wanted, options.joints, hands, body, models, options, stages);
+  const auto is_of_hand = [](const auto& part) { return part.has_value(); };
+  const auto of_hands = static_cast<std::size_t>(std::ranges::count_if(grown.skeleton.part, is_of_hand));
+  if (!options.joints || of_hands == 0) return grown;
+  if (*options.joints < of_hands + kJointsOfBody) return grow(seen, wanted, options.joints, false, body, models, options, stages);
+  std::size_t count = *options.joints - of_hands;
+  for (int round = 0; round < kCountRounds && grown.skeleton.joints.size() != *options.joints; ++round) {
+    grown = grow(seen, wanted, count, true, body, models, options, stages);
+    const std::size_t wished = count + *options.joints, had = grown.skeleton.joints.size();
+    count = wished > had + kJointsOfBody ? wished - had : kJointsOfBody;
+  }
+  return grown;
 }
 
 // In the body's frame, in the unit of the mesh.

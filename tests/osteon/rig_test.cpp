@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The main job, run as users run it, with the weights that are shipped.
+#include <algorithm>
 #include <array>
 #include <map>
 #include <numeric>
@@ -44,6 +45,28 @@ TEST_F(RigCommand, the_same_bytes_with_one_and_two_threads) {
   ASSERT_EQ(osteon(folder_, "rig hero.obj -o one.glb --threads 1").code, 0);
   ASSERT_EQ(osteon(folder_, "rig hero.obj -o two.glb --threads 2").code, 0);
   EXPECT_TRUE(test::content(folder_ / "one.glb") == test::content(folder_ / "two.glb"));
+}
+
+bool has_joint(const io::Asset& asset, const std::string& name) { return std::ranges::count(asset.skeleton->names, name) == 1; }
+
+TEST_F(RigCommand, hands_have_fingers_unless_they_are_not_wanted) {
+  io::save_obj(folder_ / "fingers.obj", synth::make_character(synth::Kind::Biped, 8, {256, synth::Finish::Smooth}).mesh);
+  const auto rigged = [&](const std::string& options) {
+    const auto run = osteon(folder_, "rig fingers.obj -o fingers.glb " + options);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return io::load(folder_ / "fingers.glb");
+  };
+  const io::Asset both = rigged("");
+  for (const char* side : {"left_", "right_"}) {
+    EXPECT_TRUE(has_joint(both, std::string(side) + "hand"));
+    for (const char* finger : {"thumb_1", "thumb_3", "index_1", "middle_2", "ring_3"})
+      EXPECT_TRUE(has_joint(both, side + std::string(finger)));
+  }
+  const io::Asset off = rigged("--fingers off"), coarse = rigged("--detail 0.3"), few = rigged("--joints 20"), many = rigged("--joints 50");
+  for (const io::Asset* without : {&off, &coarse, &few}) EXPECT_FALSE(has_joint(*without, "left_hand"));
+  EXPECT_LT(off.skeleton->size(), both.skeleton->size());
+  EXPECT_TRUE(has_joint(many, "left_index_1"));  // counted among the joints that are asked for
+  EXPECT_NEAR(static_cast<double>(many.skeleton->size()), 50.0, 2.0);
 }
 
 // The same mesh with its vertices and faces in another order.

@@ -17,12 +17,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 class JoinTree {
  public:
   JoinTree(const Neighbourhoods& ring, std::span<const float> distance, float least)
-      : ring_(ring),
-        distance_(distance),
-        least_(least),
-        pieces_(ring.size()),
-        of_piece_(ring.size(), kNone),
-        of_(ring.size(), kNone) {}
+      : ring_(ring), distance_(distance), least_(least), pieces_(ring.size()), of_piece_(ring.size(), kNone), of_(ring.size(), kNone) {}
 
   std::vector<Branch> run() {
     for (std::uint32_t v : farthest_first()) {
@@ -69,7 +64,8 @@ class JoinTree {
   }
 
   std::uint32_t met(std::uint32_t a, std::uint32_t b, float level) {
-    if (std::pair(found_[b].top, a) > std::pair(found_[a].top, b)) std::swap(a, b);
+    const bool b_is_longer = found_[b].top > found_[a].top || (found_[b].top == found_[a].top && b < a);
+    if (b_is_longer) std::swap(a, b);
     if (!has_children_[b] && found_[b].top - level < least_) {
       absorbed_by_[b] = a;
       return a;
@@ -83,8 +79,12 @@ class JoinTree {
     return joined;
   }
 
-  std::uint32_t standing_for(std::uint32_t branch) const {
-    while (absorbed_by_[branch] != kNone) branch = absorbed_by_[branch];
+  std::uint32_t standing_for(std::uint32_t branch) {
+    while (absorbed_by_[branch] != kNone) {
+      const std::uint32_t next = absorbed_by_[branch];
+      if (absorbed_by_[next] != kNone) absorbed_by_[branch] = absorbed_by_[next];  // path halving
+      branch = next;
+    }
     return branch;
   }
 

@@ -111,16 +111,15 @@ std::optional<geometry::MirrorPairs> pairs_of(const geometry::WorkingMesh& worki
   return geometry::mirror_pairs(mesh, symmetry);
 }
 
-// What the networks need to know of the working mesh.
-void survey(Body& body, Stages& stages) {
+// What all networks need to know of the working mesh.
+geometry::GeodesicBalls survey(Body& body, Stages& stages) {
   const TriangleMesh& working = body.working.mesh;
   body.ring = geometry::one_ring(working);
-  const auto balls = stages.run("neighbourhoods", [&] { return geometry::geodesic_balls(working); });
+  auto balls = stages.run("neighbourhoods", [&] { return geometry::geodesic_balls(working); });
   const auto geodesic = geometry::evenly(balls, kGeodesicNeighbours);
-  body.regions =
-      stages.run("regions", [&] { return geometry::regions(working, balls, nets::vote_regions, geometry::outermost_vertex(working)); });
   body.graph = infer::single_mesh(body.positions(), {body.ring.offsets, body.ring.members}, {geodesic.offsets, geodesic.members});
   body.voxels = stages.run("voxels", [&] { return geometry::voxelize(working); });
+  return balls;
 }
 
 Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stages) {
@@ -131,11 +130,14 @@ Body study(const TriangleMesh& mesh, const RignetOptions& options, Stages& stage
     body.pairs = stages.run("mirror pairs", [&] { return pairs_of(body.working, *symmetry); });
     body.symmetry = body.pairs ? body.pairs->plane : *symmetry;
   }
-  survey(body, stages);
+  const geometry::GeodesicBalls balls = survey(body, stages);
+  const TriangleMesh& working = body.working.mesh;
+  body.regions =
+      stages.run("regions", [&] { return geometry::regions(working, balls, nets::vote_regions, geometry::outermost_vertex(working)); });
   return body;
 }
 
-// For the skin of what is finer than the working mesh.
+// For the skin of what is finer than the working mesh: one with more vertices, and no regions. Pre: `options` ask for fewer.
 void study_closer(Body& body, const TriangleMesh& mesh, geometry::WorkingMeshOptions options, Stages& stages) {
   options.max_vertices += kFineVertices - options.target_vertices;
   options.target_vertices = kFineVertices;
@@ -298,7 +300,7 @@ Grown grow(const JointCandidates& seen, float wanted, std::optional<std::size_t>
 // place of is known afterwards only.
 Grown grow_to_count(const JointCandidates& seen, float wanted, const Body& body, const infer::RignetModels& models,
                     const RignetOptions& options, Stages& stages) {
-  const bool hands = options.fingers == Fingers::automatic && options.detail >= kHandDetail;
+  const bool hands = options.fingers == Fingers::automatic && (options.joints || options.bandwidth || options.detail >= kHandDetail);
   Grown grown = grow(seen, wanted, options.joints, hands, body, models, options, stages);
   const auto is_of_hand = [](const auto& part) { return part.has_value(); };
   const auto of_hands = static_cast<std::size_t>(std::ranges::count_if(grown.skeleton.part, is_of_hand));
@@ -399,7 +401,8 @@ Matrix distances_to(const std::vector<Bone>& bones, const Body& body, const Abla
 }
 
 // Whether many joints have hardly a vertex that is nearer to their bones than to all others: fingers, on a mesh that can be finer.
-bool is_too_coarse(const std::vector<Bone>& bones, std::size_t joints, const Body& body) {
+bool is_too_coarse(const std::vector<Bone>& bones, std::size_t joints, const Body& body, const geometry::WorkingMeshOptions& options) {
+  if (options.target_vertices >= kFineVertices) return false;
   if (joints < kManyJoints || body.working.clean.mesh.positions.size() <= body.positions().size()) return false;
   std::vector<Segment> segments;
   for (const Bone& b : bones) segments.push_back(b.segment);
@@ -516,7 +519,7 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
     report.warnings.push_back("the character stands on the plane z = 0: z was taken for its up axis");
   result.skeleton = options.skeleton ? *options.skeleton : turned(skeleton, body.frame.turn.transpose());
   const std::vector<Bone> list = normalised_bones(skeleton, body.working.normalization);
-  if (is_too_coarse(list, skeleton.size(), body)) study_closer(body, mesh, options.working_mesh, stages);
+  if (is_too_coarse(list, skeleton.size(), body, options.working_mesh)) study_closer(body, mesh, options.working_mesh, stages);
   const Matrix distances = stages.run("bone distances", [&] { return distances_to(list, body, options.ablation); });
   Matrix raw = stages.run(
       "skin network", [&] { return predict_weights(list, skeleton.size(), distances, body, models, options.ablation, report.warnings); });

@@ -44,7 +44,7 @@ JointTree connect(const JointSet& joints, const TreeEvidence& evidence, const Tr
 
 // In the unit and frame that `normalization` undoes to: depth first from the root, in the order of the joint set; named (joint_names.h) and
 // oriented along the bones, as one sees the character from its front, which is +z, or -z where `is_seen_from_behind`. `parts`: what
-// joint it is, in the order of the joint set; empty: of none.
+// each joint is of a hand, in the order of the joint set; empty: nothing.
 struct TreeSkeleton {
   Skeleton skeleton;
   PerJoint<std::size_t> from;  // skeleton joint -> index in the joint set

@@ -160,6 +160,19 @@ TEST(JointExtraction, a_joint_whose_votes_are_spread_is_found_with_twice_the_ban
   EXPECT_NEAR(joints.positions.back().y(), 0.55f, 0.02f);
 }
 
+// All agree on a joint at x = -0.3 and on another; votes for a third are spread around x = 0.3, which has no mirror image without symmetry.
+TEST(JointExtraction, without_symmetry_a_joint_may_be_spread_at_the_mirror_image_of_another) {
+  JointCandidates seen;
+  for (int i = 0; i < 400; ++i)
+    for (const Vec3f& p : {Vec3f(-0.3f, 0.5f, 0.0f), Vec3f(0.0f, 0.9f, 0.0f)})
+      seen.positions.push_back(p + 1e-5f * static_cast<float>(i) * Vec3f::UnitZ());
+  for (int i = 0; i < 60; ++i) seen.positions.emplace_back(0.3f, 0.46f + 0.08f * static_cast<float>(i) / 59.0f, 0.0f);
+  seen.attention.assign(seen.positions.size(), 1.0f);
+  const JointSet joints = extract_joints(seen, geometry::VoxelGrid{}, std::nullopt, {.min_share = 0.1f, .spread_share = 0.02f}).joints;
+  ASSERT_EQ(joints.size(), 3u);
+  EXPECT_NEAR((joints.positions.back() - Vec3f(0.3f, 0.5f, 0.0f)).norm(), 0.0f, 0.02f);
+}
+
 TEST(JointExtraction, nothing_attended_to_gives_no_joints) {
   JointCandidates seen = candidates_around(figure(), 20, 0.01f, 12);
   std::ranges::fill(seen.attention, 0.0f);

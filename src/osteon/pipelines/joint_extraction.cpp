@@ -170,7 +170,9 @@ void add_spread_joints(JointSet& joints, const Votes& rest, double all, const ge
   std::vector<float> shares = kernel_density(shifted, rest.weights, mirror, h);
   for (float& share : shares) share = static_cast<float>(static_cast<double>(share) / all);
   for (const Mode& mode : modes_of(shifted, shares, mirror, h)) {
-    const auto taken = [&](const Vec3f& p) { return (p - mode.position).norm() <= h || (p - mirrored(mode.position)).norm() <= h; };
+    const auto taken = [&](const Vec3f& p) {
+      return (p - mode.position).norm() <= h || (mirror == Mirror::across_x && (p - mirrored(mode.position)).norm() <= h);
+    };
     if (mode.share >= options.spread_share && std::ranges::none_of(before.positions, taken))
       add_mode(joints, mode, rest, shifted, voxels, mirror, options);
   }

@@ -63,7 +63,11 @@ void finish(benchmark::State& state) {
   Matrix raw(static_cast<Eigen::Index>(working.mesh.positions.size()), 40);
   for (float& w : raw.reshaped<Eigen::RowMajor>()) w = std::pow(random.uniform(), 8.0f);
   const auto ring = geometry::one_ring(working.mesh);
-  for (auto _ : state) benchmark::DoNotOptimize(finish_weights(raw, working, ring));
+  Skeleton skeleton;
+  for (std::uint16_t j = 0; j < 40; ++j)
+    skeleton.add(std::to_string(j), j > 0 ? std::optional(static_cast<JointId>(j - 1)) : std::nullopt,
+                 Vec3f(0, 0, static_cast<float>(j) / 40.0f));
+  for (auto _ : state) benchmark::DoNotOptimize(finish_weights(raw, working, ring, skeleton));
   state.SetLabel(std::to_string(mesh.positions.size()) + " vertices");
 }
 BENCHMARK(finish)->Arg(4)->Arg(7)->Unit(benchmark::kMillisecond)->UseRealTime();

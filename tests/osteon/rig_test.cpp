@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "osteon/base/random.h"
@@ -63,10 +64,20 @@ TEST_F(RigCommand, hands_have_fingers_unless_they_are_not_wanted) {
       EXPECT_TRUE(has_joint(both, side + std::string(finger)));
   }
   const io::Asset off = rigged("--fingers off"), coarse = rigged("--detail 0.3"), few = rigged("--joints 20"), many = rigged("--joints 50");
-  for (const io::Asset* without : {&off, &coarse, &few}) EXPECT_FALSE(has_joint(*without, "left_hand"));
+  const io::Asset wide = rigged("--bandwidth 0.08");
+  for (const io::Asset* without : {&off, &coarse, &few, &wide}) EXPECT_FALSE(has_joint(*without, "left_hand"));
   EXPECT_LT(off.skeleton->size(), both.skeleton->size());
   EXPECT_TRUE(has_joint(many, "left_index_1"));  // counted among the joints that are asked for
   EXPECT_NEAR(static_cast<double>(many.skeleton->size()), 50.0, 2.0);
+}
+
+TEST_F(RigCommand, whether_it_is_a_character_does_not_depend_on_the_joints_that_are_wished) {
+  for (const char* wish : {"--detail 0", "--detail 1", "--joints 5", "--joints 90"}) {
+    const auto run = osteon(folder_, "rig hero.obj -o wished.glb --report wished.json " + std::string(wish));
+    EXPECT_EQ(run.code, 0) << wish << ": " << run.err;
+    const auto report = nlohmann::json::parse(test::content(folder_ / "wished.json"));
+    EXPECT_GT(report.at("character").get<double>(), 0.5) << wish;
+  }
 }
 
 // The same mesh with its vertices and faces in another order.

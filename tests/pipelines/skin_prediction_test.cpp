@@ -34,6 +34,13 @@ TEST(SkinPrediction, bones_give_their_weight_to_the_joint_they_start_at) {
   EXPECT_FLOAT_EQ(joints.sum(), 2.0f);
 }
 
+Skeleton of_joints(std::size_t count) {
+  Skeleton s;
+  for (std::size_t j = 0; j < count; ++j)
+    s.add(std::to_string(j), j > 0 ? std::optional(static_cast<JointId>(j - 1)) : std::nullopt, {0, static_cast<float>(j), 0});
+  return s;
+}
+
 TEST(SkinPrediction, every_vertex_of_the_original_gets_valid_weights_whatever_the_network_says) {
   const TriangleMesh mesh = shapes::merged(shapes::capsule(0.2f, 1.0f),
                                            shapes::transformed(shapes::icosphere(1, 0.1f), Transform(Eigen::Translation3f(2, 0, 0))));
@@ -41,16 +48,16 @@ TEST(SkinPrediction, every_vertex_of_the_original_gets_valid_weights_whatever_th
   const auto ring = geometry::one_ring(working.mesh);
   const auto rows = static_cast<Eigen::Index>(working.mesh.positions.size());
   Matrix raw = Matrix::Zero(rows, 3);
-  validate(finish_weights(raw, working, ring), mesh.positions.size(), 3);
+  validate(finish_weights(raw, working, ring, of_joints(3)), mesh.positions.size(), 3);
   raw.setConstant(NAN);
-  validate(finish_weights(raw, working, ring), mesh.positions.size(), 3);
+  validate(finish_weights(raw, working, ring, of_joints(3)), mesh.positions.size(), 3);
   raw.setConstant(1.0f);
-  const SkinWeights equal = finish_weights(raw, working, ring, {.max_influences = 2});
+  const SkinWeights equal = finish_weights(raw, working, ring, of_joints(3), {.max_influences = 2});
   validate(equal, mesh.positions.size(), 3);
   EXPECT_EQ(equal.max_influences(), 2u);
   raw.setZero();
   raw(rows / 2, 1) = 1e-30f;  // one vertex alone
-  const SkinWeights one = finish_weights(raw, working, ring);
+  const SkinWeights one = finish_weights(raw, working, ring, of_joints(3));
   for (VertexId v : mesh.positions.ids()) EXPECT_EQ(one[v][0], (Influence{JointId{1}, 1.0f}));
 }
 
@@ -60,7 +67,7 @@ TEST(SkinPrediction, weights_follow_the_surface_of_the_original) {
   Matrix raw = Matrix::Zero(static_cast<Eigen::Index>(working.mesh.positions.size()), 2);
   for (VertexId v : working.mesh.positions.ids())
     raw(static_cast<Eigen::Index>(index(v)), working.normalization.undo(working.mesh.positions[v]).y() > 0.5f ? 1 : 0) = 1.0f;
-  const SkinWeights weights = finish_weights(raw, working, geometry::one_ring(working.mesh));
+  const SkinWeights weights = finish_weights(raw, working, geometry::one_ring(working.mesh), of_joints(2));
   for (VertexId v : mesh.positions.ids())
     if (const float y = mesh.positions[v].y(); std::abs(y - 0.5f) > 0.1f) {
       EXPECT_EQ(weights[v][0], (Influence{y > 0.5f ? JointId{1} : JointId{0}, 1.0f}));

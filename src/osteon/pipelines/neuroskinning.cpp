@@ -175,7 +175,7 @@ NeuroskinningResult neuroskinning_weights(const TriangleMesh& mesh, const Skelet
   skin::fill_empty_rows(weights, working.mesh.positions, ring);
   result.weights = skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
   result.weights = skin::evened(result.weights, working.clean, options.max_influences);
-  if (options.rigid_islands) result.rigid_islands = skin::make_islands_rigid(result.weights, working.clean);
+  if (options.rigid_islands) result.rigid_islands = skin::make_islands_rigid(result.weights, working.clean, turned(skeleton, turn));
   return result;
 }
 

@@ -242,21 +242,12 @@ void warn_about_joints(const JointExtraction& found, std::size_t joints, const R
     warnings.push_back(fmt::format("{} joints were asked for; the nearest that was found is {}", *options.joints, joints));
 }
 
-// How far the joints and the skeleton can be trusted. `from`: for each joint of the result the one that was found; none: a hand's.
-void judge(const JointCandidates& seen, const JointExtraction& found, const PerJoint<std::optional<std::size_t>>& from, const Body& body,
-           RignetResult& result) {
-  const std::vector<JointEvidence> evidence = joint_evidence(seen, found.joints, body.working.mesh);
-  std::vector<JointEvidence> of_body;
-  RigReport& report = result.report;
+// How far the joints can be trusted. `from`: for each joint of the result the one that was found; none: a hand's.
+void judge_joints(const std::vector<JointEvidence>& evidence, const PerJoint<std::optional<std::size_t>>& from, RignetResult& result) {
   for (const auto& joint : from) {
     result.joint_evidence.push_back(joint ? std::optional(evidence[*joint]) : std::nullopt);
-    report.joint_confidence.push_back(joint ? joint_confidence(evidence[*joint]) : kHandConfidence);
-    if (joint) of_body.push_back(evidence[*joint]);
+    result.report.joint_confidence.push_back(joint ? joint_confidence(evidence[*joint]) : kHandConfidence);
   }
-  result.character_evidence = character_evidence(of_body, found.explained, *report.bone_confidence);
-  report.character = character_probability(result.character_evidence);
-  const auto& joints = report.joint_confidence;
-  report.confidence = *report.character * std::accumulate(joints.begin(), joints.end(), 0.0f) / static_cast<float>(joints.size());
 }
 
 // Normalised, and not reduced.
@@ -300,7 +291,8 @@ Grown grow(const JointCandidates& seen, float wanted, std::optional<std::size_t>
 // place of is known afterwards only.
 Grown grow_to_count(const JointCandidates& seen, float wanted, const Body& body, const infer::RignetModels& models,
                     const RignetOptions& options, Stages& stages) {
-  const bool hands = options.fingers == Fingers::automatic && (options.joints || options.bandwidth || options.detail >= kHandDetail);
+  const bool fine = options.joints || options.bandwidth.value_or(bandwidth_of_detail(options.detail)) <= bandwidth_of_detail(kHandDetail);
+  const bool hands = options.fingers == Fingers::automatic && fine;
   Grown grown = grow(seen, wanted, options.joints, hands, body, models, options, stages);
   const auto is_of_hand = [](const auto& part) { return part.has_value(); };
   const auto of_hands = static_cast<std::size_t>(std::ranges::count_if(grown.skeleton.part, is_of_hand));
@@ -315,6 +307,24 @@ Grown grow_to_count(const JointCandidates& seen, float wanted, const Body& body,
   return grown;
 }
 
+// Whether it is a character at all is asked of the usual joints, whatever number is wished: fewer would explain less of what is seen, and
+// more would have less certain bones.
+CharacterEvidence evidence_of_character(const JointCandidates& seen, const Grown& grown, const Body& body,
+                                        const infer::RignetModels& models, const RignetOptions& options, Stages& stages) {
+  RignetOptions usual = options;
+  usual.detail = RignetOptions{}.detail;
+  usual.bandwidth.reset();
+  usual.joints.reset();
+  const bool is_usual = !options.joints && !options.bandwidth && options.detail == usual.detail;
+  const Grown judged =
+      is_usual ? grown : grow(seen, expected_joints(body.triangles, usual.detail), std::nullopt, false, body, models, usual, stages);
+  const std::vector<JointEvidence> evidence = joint_evidence(seen, judged.found.joints, body.working.mesh);
+  std::vector<JointEvidence> of_body;  // without what a hand was put in the place of
+  for (const auto& joint : judged.skeleton.from)
+    if (joint) of_body.push_back(evidence[*joint]);
+  return character_evidence(of_body, judged.found.explained, judged.skeleton.tree.likelihood);
+}
+
 // In the body's frame, in the unit of the mesh.
 Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, const RignetOptions& options, RignetResult& result,
                           Stages& stages) {
@@ -323,17 +333,22 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
   const JointCandidates seen = stages.run("joint networks", [&] {
     return heard(joint_votes(body.working.mesh, body.graph, body.regions, models, wanted), body.positions().size(), options.ablation);
   });
-  const auto [found, grown] = grow_to_count(seen, wanted, body, models, options, stages);
-  warn_about_joints(found, grown.joints.size(), options, report.warnings);
-  report.bandwidth = found.bandwidth;
-  report.explained = found.explained;
+  const Grown grown = grow_to_count(seen, wanted, body, models, options, stages);
+  warn_about_joints(grown.found, grown.skeleton.joints.size(), options, report.warnings);
+  report.bandwidth = grown.found.bandwidth;
+  report.explained = grown.found.explained;
   report.bone_confidence = report.character = 0.0f;
-  if (grown.joints.size() == 0) return single_joint(body);
-  report.bone_confidence = grown.tree.likelihood;
-  TreeSkeleton made = make_skeleton(grown.joints, grown.tree, body.working.normalization, body.frame.is_seen_from_behind, grown.part);
+  if (grown.skeleton.joints.size() == 0) return single_joint(body);
+  report.bone_confidence = grown.skeleton.tree.likelihood;
+  TreeSkeleton made = make_skeleton(grown.skeleton.joints, grown.skeleton.tree, body.working.normalization, body.frame.is_seen_from_behind,
+                                    grown.skeleton.part);
   PerJoint<std::optional<std::size_t>> from;
-  for (std::size_t joint : made.from) from.push_back(grown.from[joint]);
-  judge(seen, found, from, body, result);
+  for (std::size_t joint : made.from) from.push_back(grown.skeleton.from[joint]);
+  judge_joints(joint_evidence(seen, grown.found.joints, body.working.mesh), from, result);
+  result.character_evidence = evidence_of_character(seen, grown, body, models, options, stages);
+  report.character = character_probability(result.character_evidence);
+  const auto& sure = report.joint_confidence;
+  report.confidence = *report.character * std::accumulate(sure.begin(), sure.end(), 0.0f) / static_cast<float>(sure.size());
   return std::move(made.skeleton);
 }
 
@@ -532,7 +547,7 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   result.weights = stages.run("weights", [&] {
     const auto partners = joint_partners(skeleton, body);
     if (partners) raw = mean_with_image(raw, body.working.mesh, *body.symmetry, *partners);
-    SkinWeights weights = finish_weights(raw, body.working, body.ring, finish);
+    SkinWeights weights = finish_weights(raw, body.working, body.ring, skeleton, finish);
     if (!partners || !body.pairs) return weights;
     return mirrored_exactly(weights, body.working.clean.from_original, body.pairs->partner, *partners, options.skin.max_influences);
   });

@@ -28,7 +28,7 @@ Matrix pooled(const Matrix& a, const Matrix& b, float share) {
 }
 
 SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& working, const geometry::Neighbourhoods& one_ring,
-                           const SkinPredictionOptions& options) {
+                           const Skeleton& skeleton, const SkinPredictionOptions& options) {
   const auto columns = static_cast<std::size_t>(raw.cols());
   Matrix weights = raw;
   skin::prune_rows(weights, 0.0f, columns);  // rows sum to 1 and are finite from here on
@@ -38,7 +38,7 @@ SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& worki
   if (!(weights.maxCoeff() > 0.0f)) weights.col(0).setOnes();
   SkinWeights out = skin::weights_on_original(weights, geometry::carry_back(working), options.max_influences);
   out = skin::evened(out, working.clean, options.max_influences);
-  if (options.rigid_islands) skin::make_islands_rigid(out, working.clean);
+  if (options.rigid_islands) skin::make_islands_rigid(out, working.clean, skeleton);
   return out;
 }
 

@@ -31,8 +31,8 @@ Matrix pooled(const Matrix& a, const Matrix& b, float share);
 
 // Raw weights of joints on the working mesh (V,J) -> final ones on the original: smoothed over the one-ring, small ones pruned, holes
 // filled from the nearest vertex, carried back (facts 7.6). A mesh without any weight gets joint 0 throughout. Islands that are made rigid
-// are ours.
+// are ours. `skeleton`: in the space of the mesh that was given.
 SkinWeights finish_weights(const Matrix& raw, const geometry::WorkingMesh& working, const geometry::Neighbourhoods& one_ring,
-                           const SkinPredictionOptions& options = {});
+                           const Skeleton& skeleton, const SkinPredictionOptions& options = {});
 
 }  // namespace osteon::pipelines

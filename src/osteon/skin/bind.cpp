@@ -109,7 +109,7 @@ Binding bind(const TriangleMesh& mesh, const Skeleton& skeleton, const BindOptio
   out.repairs = body.clean.repairs;
   WeightRows rows = raw_weights(body, skeleton, options, out.notes);
   if (options.islands == Islands::rigid && options.method != Method::transfer)
-    out.rigid_islands = make_islands_rigid(rows, body.clean.mesh, options.island);
+    out.rigid_islands = make_islands_rigid(rows, body.clean.mesh, skeleton, options.island);
   if (rounds(options) > 0) rows = smoothed(std::move(rows), geometry::one_ring(body.clean.mesh), rounds(options));
   prune(rows, options.prune_share.value_or(0.05f), options.max_influences);
   out.weights = to_skin_weights(rows, body.clean.from_original);

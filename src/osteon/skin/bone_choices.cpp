@@ -40,7 +40,7 @@ BoneChoices bone_choices(const TriangleMesh& mesh, const Skeleton& skeleton, con
   BoneDistances distances = bone_distances(body, bones);
   lengthen_past_ends(distances, mesh.positions, bones, skeleton);
   WeightRows shares = falloff_weights(distances, bones, bounds(mesh).sizes().maxCoeff(), kFalloff);
-  make_islands_rigid(shares, mesh);
+  make_islands_rigid(shares, mesh, skeleton);
   shares = smoothed(std::move(shares), geometry::one_ring(mesh), 1);
 
   const auto rows = static_cast<Eigen::Index>(mesh.positions.size()), columns = static_cast<Eigen::Index>(options.most);

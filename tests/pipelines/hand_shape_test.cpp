@@ -50,6 +50,17 @@ TEST(FindHand, fingers_run_through_the_joints_of_generated_hands_thumb_first) {
   }
 }
 
+// Both hands within reach of either arm's end, as those of short arms are.
+TEST(FindHand, of_two_hands_it_is_the_nearer_one) {
+  const FigureWithHands figure = test::figure_with_hands(3, 1);
+  const Vec3f apart(0, 0, 0.1f);
+  const TriangleMesh two = shapes::merged(figure.mesh, shapes::shifted(figure.mesh, apart));
+  const Vec3f end = figure.at("LeftHand"), from = figure.at("LeftArm") + apart;
+  const auto here = find_hand(two, end, from), there = find_hand(two, end + apart, from);
+  ASSERT_TRUE(here && there);
+  EXPECT_NEAR((there->fingers.back().tip - here->fingers.back().tip - apart).norm(), 0.0f, 0.01f);
+}
+
 TEST(FindHand, a_mirror_image_has_the_mirror_image) {
   const FigureWithHands figure = test::figure_with_hands(3, 1);
   const auto left = left_hand(figure), right = find_hand(figure.mesh, figure.at("RightHand"), figure.at("RightArm"));

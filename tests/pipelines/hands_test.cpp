@@ -125,7 +125,7 @@ TEST(Hands, a_hand_on_one_side_only_has_no_partner_unless_the_surface_is_its_ima
     if (std::ranges::all_of(face, [&](VertexId v) { return one_handed.positions[v].x() > wrist; })) kept.push_back(face);
   one_handed.faces = PerFace<Triangle>(kept);
   const SkeletonDraft one = with_hands(coarse.joints, coarse.tree, one_handed, false),
-                          both = with_hands(coarse.joints, coarse.tree, one_handed, true);
+                      both = with_hands(coarse.joints, coarse.tree, one_handed, true);
   expect_a_tree(one);
   ASSERT_EQ(joints_of(one, HandPart::wrist).size(), 1u);
   EXPECT_FALSE(one.joints.partner[joints_of(one, HandPart::wrist)[0]]);
@@ -141,6 +141,33 @@ TEST(Hands, what_a_hand_holds_hangs_on_it) {
   ASSERT_EQ(joints_of(s, HandPart::wrist).size(), 2u);
   const auto sword = std::ranges::find(s.from, std::optional(coarse.joints.size() - 1)) - s.from.begin();
   EXPECT_EQ(s.tree.parents[static_cast<std::size_t>(sword)], joints_of(s, HandPart::wrist)[0]);
+}
+
+TEST(Hands, what_the_right_hand_holds_does_not_cross_them) {
+  Coarse coarse(fingered());
+  coarse.add(fingered().at("RightHandMiddle") + Vec3f(-0.2f, 0.2f, 0), "RightPalm");
+  const SkeletonDraft s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
+  expect_a_tree(s);
+  const auto wrists = joints_of(s, HandPart::wrist);
+  ASSERT_EQ(wrists.size(), 2u);
+  for (const std::size_t wrist : wrists) EXPECT_GT(s.joints.positions[wrist].x() * s.joints.positions[*s.tree.parents[wrist]].x(), 0.0f);
+}
+
+// A hand that hangs down lies beside the leg.
+TEST(Hands, a_joint_of_another_limb_stays_however_near_it_is) {
+  Coarse coarse(fingered());
+  const Vec3f palm = coarse.joints.positions[coarse.named.at("LeftPalm")];
+  const std::size_t knee = coarse.joints.size();
+  coarse.add(palm, "LeftUpLeg");
+  coarse.add(mirrored(palm), "RightUpLeg");
+  coarse.joints.partner[knee] = knee + 1;
+  coarse.joints.partner[knee + 1] = knee;
+  const SkeletonDraft s = with_hands(coarse.joints, coarse.tree, fingered().mesh, true);
+  expect_a_tree(s);
+  EXPECT_EQ(joints_of(s, HandPart::wrist).size(), 2u);
+  const auto kept = std::ranges::find(s.from, std::optional(knee));
+  ASSERT_NE(kept, s.from.end());
+  EXPECT_EQ(s.from[*s.tree.parents[static_cast<std::size_t>(kept - s.from.begin())]], coarse.named.at("LeftUpLeg"));
 }
 
 TEST(Hands, where_there_are_none_nothing_changes) {

@@ -35,6 +35,8 @@ constexpr std::array<std::array<float, 3>, 5> kJoints{
 // Of the wrist, from the thumb's web, in parts of the median finger: where the narrowest section may be, the steps in which it is looked
 // for, and how far before it the joint is.
 constexpr float kWristFirst = 0.6f, kWristLast = 2.2f, kWristStep = 0.1f, kBeforeNarrowest = 0.1f;
+constexpr float kAlike = 0.7f;  // of the longest median finger: of such hands the nearest is that of the limb
+constexpr float kPalm = 4.0f;   // from the knuckles to the wrist at most; farther the surface is the body's, on which a hand lies
 
 // The middle line of a finger. Places: 0 at the tip, 1 at the web.
 struct Axis {
@@ -232,6 +234,19 @@ std::vector<Bunch> bunches(const std::vector<geometry::Branch>& list) {
   return out;
 }
 
+// In the middle of where the fingers leave the hand, without the thumb.
+Vec3f knuckles_of(const std::vector<Axis>& fingers) {
+  Vec3f sum = Vec3f::Zero();
+  for (std::size_t k = 1; k < fingers.size(); ++k) sum += fingers[k].at(1.0f);
+  return sum / static_cast<float>(fingers.size() - 1);
+}
+
+struct Found {
+  HandShape shape;
+  float length;  // of the median finger
+  float away;    // from the end of the limb
+};
+
 std::optional<Vec3f> wrist_of(const Bunch& bunch, const std::vector<Axis>& fingers, const TriangleMesh& mesh,
                               std::span<const float> distance) {
   const float length = median_of(fingers, [](const Axis& f) { return f.length; });
@@ -249,7 +264,8 @@ std::optional<Vec3f> wrist_of(const Bunch& bunch, const std::vector<Axis>& finge
   }
   if (!narrowest) return std::nullopt;
   const auto section = at(*narrowest - kBeforeNarrowest);
-  return section ? std::optional(section->middle) : std::nullopt;
+  if (!section) return std::nullopt;
+  return (section->middle - knuckles_of(fingers)).norm() <= kPalm * length ? std::optional(section->middle) : std::nullopt;
 }
 
 HandShape shape_of(const std::vector<Axis>& fingers) {
@@ -268,8 +284,7 @@ std::optional<HandShape> find_hand(const TriangleMesh& mesh, const Vec3f& end, c
   if (part.faces.empty()) return std::nullopt;
   const std::vector<float> distance = distances_from(from, part);
   const std::vector<geometry::Branch> branches = geometry::branches(geometry::one_ring(part), distance, kLeast);
-  std::optional<HandShape> best;
-  float longest = 0.0f;  // of the median fingers
+  std::vector<Found> hands;
   for (const Bunch& bunch : bunches(branches)) {
     if (bunch.ends.size() < 4) continue;
     std::vector<Axis> axes;
@@ -277,13 +292,14 @@ std::optional<HandShape> find_hand(const TriangleMesh& mesh, const Vec3f& end, c
       if (auto axis = axis_of(*branch, part, distance)) axes.push_back(std::move(*axis));
     const std::vector<Axis> fingers = fingers_of(std::move(axes));
     if (fingers.empty()) continue;
-    const float length = median_of(fingers, [](const Axis& f) { return f.length; });
-    if (length <= longest) continue;
-    longest = length;
-    best = shape_of(fingers);
-    best->wrist = wrist_of(bunch, fingers, part, distance);
+    Found& hand = hands.emplace_back(
+        Found{shape_of(fingers), median_of(fingers, [](const Axis& f) { return f.length; }), (knuckles_of(fingers) - end).norm()});
+    hand.shape.wrist = wrist_of(bunch, fingers, part, distance);
   }
-  return best;
+  if (hands.empty()) return std::nullopt;
+  const float longest = std::ranges::max(hands, {}, &Found::length).length;
+  std::erase_if(hands, [&](const Found& hand) { return hand.length < kAlike * longest; });
+  return std::ranges::min(hands, {}, &Found::away).shape;
 }
 
 }  // namespace osteon::pipelines

@@ -25,7 +25,7 @@ struct HandShape {
 // thumb is the branch that leaves it first. With 0 at a fingertip and 1 at the web where the finger meets others, by the distance along
 // the surface, joints of fingers lie at 0.40, 0.75 and 1.2 in the middle of the surface's sections (beyond 1 on the straight line), those
 // of thumbs at 0.68, 1.42 and 2.2; each finger has its own, a few hundredths from these. The wrist is a tenth of the median finger before
-// the narrowest section between 0.6 and 2.2 of that length from the thumb's web; none where the surface ends before.
+// the narrowest section between 0.6 and 2.2 of that length from the thumb's web; none where the surface ends before, or that is not near.
 // Medians over the six groups of training characters with such hands; half of their joints are within 0.03, the last within 0.05. Ours,
 // from no paper. `mesh`: not reduced; frame: y up, feet on y = 0, longest side 1.
 std::optional<HandShape> find_hand(const TriangleMesh& mesh, const Vec3f& end, const Vec3f& from);

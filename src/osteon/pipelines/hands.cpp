@@ -81,22 +81,24 @@ struct LimbEnd {
   Vec3f end, from;
 };
 
-// One for each joint that a limb is followed from and that leaves it, so that a hand counts once however many joints end in it.
+// One for each joint that a limb is followed from and that leaves it, and side of the body (short arms may be followed from the spine), so
+// that a hand counts once however many joints end in it.
 std::vector<LimbEnd> limb_ends(const JointSet& joints, const JointTree& tree) {
   std::vector<bool> is_leaf(joints.size(), true);
   for (const auto& parent : tree.parents)
     if (parent) is_leaf[*parent] = false;
-  std::map<std::size_t, LimbEnd> limbs;
+  std::map<std::pair<std::size_t, bool>, LimbEnd> limbs;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (!is_leaf[j] || !tree.parents[j] || joints.partner[j] == j || joints.positions[j].y() < kStanding) continue;
     std::size_t first = j;
     const auto before = [&] { return *tree.parents[first]; };
     while (tree.parents[before()] && (joints.positions[before()] - joints.positions[j]).norm() < kForearm) first = before();
-    limbs[first].leaves.push_back(j);
-    limbs[first].from = joints.positions[before()];
+    LimbEnd& limb = limbs[{first, joints.positions[j].x() < 0.0f}];
+    limb.leaves.push_back(j);
+    limb.from = joints.positions[before()];
   }
   std::vector<LimbEnd> out;
-  for (auto& [first, limb] : limbs) {
+  for (auto& [key, limb] : limbs) {
     limb.end = Vec3f::Zero();
     for (std::size_t j : limb.leaves) limb.end += joints.positions[j] / static_cast<float>(limb.leaves.size());
     out.push_back(std::move(limb));
@@ -113,18 +115,27 @@ std::vector<Hand> find_hands(const JointSet& joints, const JointTree& tree, cons
   std::vector<Hand> out;
   for (std::size_t k = 0; k < limbs.size(); ++k) {
     if (!found[k]) continue;
-    const auto is_same = [&](const Hand& other) { return (knuckles(other.shape) - knuckles(*found[k])).norm() < kSame; };
-    if (std::ranges::none_of(out, is_same)) out.push_back({std::move(*found[k]), limbs[k].leaves.front()});
+    const Vec3f place = knuckles(*found[k]);
+    const auto is_same = [&](const Hand& other) { return (knuckles(other.shape) - place).norm() < kSame; };
+    const auto away = [&](std::size_t leaf) { return (joints.positions[leaf] - place).squaredNorm(); };
+    const std::size_t leaf = *std::ranges::min_element(limbs[k].leaves, {}, away);
+    if (std::ranges::none_of(out, is_same)) out.push_back({std::move(*found[k]), leaf});
   }
   return out;
 }
 
-Hand on_the_left(Hand hand, const JointSet& joints) {
-  if (knuckles(hand.shape).x() >= 0.0f) return hand;
-  return {mirrored(std::move(hand.shape)), joints.partner[hand.leaf].value_or(hand.leaf), hand.is_pair};
+// Its partner, or that of the nearest joint above it that has one (what a hand holds has none).
+std::size_t image_of(std::size_t joint, const JointSet& joints, const JointTree& tree) {
+  while (!joints.partner[joint] && tree.parents[joint]) joint = *tree.parents[joint];
+  return joints.partner[joint].value_or(joint);
 }
 
-std::vector<Hand> paired(std::vector<Hand> hands, const JointSet& joints, bool is_image) {
+Hand on_the_left(Hand hand, const JointSet& joints, const JointTree& tree) {
+  if (knuckles(hand.shape).x() >= 0.0f) return hand;
+  return {mirrored(std::move(hand.shape)), image_of(hand.leaf, joints, tree), hand.is_pair};
+}
+
+std::vector<Hand> paired(std::vector<Hand> hands, const JointSet& joints, const JointTree& tree, bool is_image) {
   std::vector<Hand> out;
   while (!hands.empty()) {
     Hand hand = std::move(hands.back());
@@ -132,9 +143,9 @@ std::vector<Hand> paired(std::vector<Hand> hands, const JointSet& joints, bool i
     const Vec3f image = pipelines::mirrored(knuckles(hand.shape));
     const auto other = std::ranges::find_if(hands, [&](const Hand& h) { return (knuckles(h.shape) - image).norm() < kPaired; });
     hand.is_pair = is_image || other != hands.end();
-    if (hand.is_pair) hand = on_the_left(std::move(hand), joints);
+    if (hand.is_pair) hand = on_the_left(std::move(hand), joints, tree);
     if (other != hands.end()) {
-      hand.shape = together(std::move(hand.shape), on_the_left(std::move(*other), joints).shape);
+      hand.shape = together(std::move(hand.shape), on_the_left(std::move(*other), joints, tree).shape);
       hands.erase(other);
     }
     out.push_back(std::move(hand));
@@ -159,13 +170,23 @@ class Builder {
     std::size_t left, right;
   };
 
-  // The hand that the joint is within. The root stays whatever it is in.
+  // The first joint of its limb: the next is of the body, on the plane or the root.
+  std::size_t limb_of(std::size_t j) const {
+    const auto is_of_body = [&](std::size_t k) { return k == tree_.root || old_.partner[k] == k; };
+    while (tree_.parents[j] && !is_of_body(*tree_.parents[j])) j = *tree_.parents[j];
+    return j;
+  }
+
+  // The hand that the joint is within. It is of the hand's limb and on its side: a hand that hangs down may be near the legs.
   std::optional<std::size_t> hand_with(std::size_t j) const {
-    if (j == tree_.root) return std::nullopt;
-    const Vec3f p = old_.positions[j], image = pipelines::mirrored(p);
+    if (j == tree_.root || old_.partner[j] == j) return std::nullopt;
+    const Vec3f p = old_.positions[j];
     for (std::size_t h = 0; h < hands_.size(); ++h) {
-      const Hand& hand = hands_[h];
-      if (is_within(p, hand.shape) || (hand.is_pair && is_within(image, hand.shape))) return h;
+      const auto& [shape, leaf, is_pair] = hands_[h];
+      const auto is_in = [&](const Vec3f& place) { return place.x() * knuckles(shape).x() >= 0.0f && is_within(place, shape); };
+      const std::size_t limb = limb_of(j);
+      if (limb == limb_of(leaf) && is_in(p)) return h;
+      if (is_pair && limb == limb_of(image_of(leaf, old_, tree_)) && is_in(pipelines::mirrored(p))) return h;
     }
     return std::nullopt;
   }
@@ -254,7 +275,7 @@ SkeletonDraft with_hands(const JointSet& joints, const JointTree& tree, const Tr
   for (Vec3f& p : seen.positions) p = joints.frame.to(p);
   std::vector<Hand> hands = find_hands(joints, tree, seen);
   const bool is_symmetric = std::ranges::any_of(joints.partner, [](const auto& partner) { return partner.has_value(); });
-  if (is_symmetric) hands = paired(std::move(hands), joints, is_image);
+  if (is_symmetric) hands = paired(std::move(hands), joints, tree, is_image);
   return Builder(joints, tree, hands).run();
 }
 

@@ -298,11 +298,17 @@ Grown grow_to_count(const JointCandidates& seen, float wanted, const Body& body,
   const auto of_hands = static_cast<std::size_t>(std::ranges::count_if(grown.skeleton.part, is_of_hand));
   if (!options.joints || of_hands == 0) return grown;
   if (*options.joints < of_hands + kJointsOfBody) return grow(seen, wanted, options.joints, false, body, models, options, stages);
+  const auto miss = [&](const Grown& g) {
+    return std::max(g.skeleton.joints.size(), *options.joints) - std::min(g.skeleton.joints.size(), *options.joints);
+  };
   std::size_t count = *options.joints - of_hands;
-  for (int round = 0; round < kCountRounds && grown.skeleton.joints.size() != *options.joints; ++round) {
-    grown = grow(seen, wanted, count, true, body, models, options, stages);
-    const std::size_t wished = count + *options.joints, had = grown.skeleton.joints.size();
-    count = wished > had + kJointsOfBody ? wished - had : kJointsOfBody;
+  for (int round = 0; round < kCountRounds && miss(grown) > 0; ++round) {
+    Grown tried = grow(seen, wanted, count, true, body, models, options, stages);
+    const std::size_t wished = count + *options.joints, had = tried.skeleton.joints.size();
+    if (miss(tried) < miss(grown)) grown = std::move(tried);
+    const std::size_t next = wished > had + kJointsOfBody ? wished - had : kJointsOfBody;
+    if (next == count) break;
+    count = next;
   }
   return grown;
 }

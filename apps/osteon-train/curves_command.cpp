@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../outputs.h"
 #include "osteon/base/error.h"
 #include "osteon/metrics/line_plot.h"
 
@@ -56,6 +57,7 @@ std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<doubl
 }
 
 void draw(const Arguments& a) {
+  check_outputs(a.logs, {{"-o", a.out, ".svg"}});
   std::vector<metrics::PlotLine> lines;
   for (const fs::path& log : a.logs) lines.push_back({log.stem().string(), thinned(points_of(log, a))});
   metrics::save_svg(a.out, {a.title, {"steps", 0.0}, {a.kind + ' ' + a.figure}, lines});

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "../interrupt.h"
+#include "../outputs.h"
 #include "osteon/base/parallel.h"
 #include "osteon/base/random.h"
 #include "osteon/dataset/pack.h"
@@ -234,7 +235,17 @@ void save_weights(const CLI::App& command, const Arguments& a, Task task, train:
   }
 }
 
+void check(const Arguments& a) {
+  std::vector<fs::path> inputs = a.data;
+  for (const fs::path* file : {&a.validation, &a.init, &a.attention})
+    if (!file->empty()) inputs.push_back(*file);
+  std::vector<Output> outputs{{"--out", a.out, ".safetensors"}};
+  if (!a.attention_out.empty()) outputs.push_back({"--attention-out", a.attention_out, ".safetensors"});
+  check_outputs(inputs, outputs);
+}
+
 void run(const CLI::App& command, Task task, Arguments a) {
+  check(a);
   if (a.threads > 0) {
     at::set_num_threads(a.threads);
     set_threads(a.threads);

@@ -143,11 +143,12 @@ bool is_done(const BatchArguments& arguments, Job& job) {
 
 // What is asked for must not cost anybody a character: no result may lie where a file of the input is, under whatever name.
 void check_outputs(const BatchArguments& arguments, const std::vector<Job>& jobs) {
-  std::set<fs::path> inputs;
-  for (const Job& job : jobs) inputs.insert(fs::canonical(job.input));
+  std::set<fs::path> taken;
+  for (const Job& job : jobs) taken.insert(fs::canonical(job.input));
+  if (arguments.options.skeleton) taken.insert(fs::weakly_canonical(*arguments.options.skeleton));
   for (const Job& job : jobs)
     for (const char* extension : {".glb", ".png", ".json"})
-      if (const fs::path place = fs::weakly_canonical(output_of(arguments, job, extension)); inputs.contains(place))
+      if (const fs::path place = fs::weakly_canonical(output_of(arguments, job, extension)); !taken.insert(place).second)
         throw Error("{}: the result of {} would overwrite it; choose another folder with -o", place.string(), job.input.string());
 }
 

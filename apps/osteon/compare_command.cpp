@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "../outputs.h"
 #include "commands.h"
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/metrics/skin_metrics.h"
@@ -88,7 +89,15 @@ void save_picture(const std::filesystem::path& path, const Rig& a, const Rig& b)
   render::save_png(path, whole);
 }
 
+void check(const CompareArguments& arguments) {
+  std::vector<Output> outputs;
+  if (arguments.json) outputs.push_back({"--json", *arguments.json, ".json"});
+  if (arguments.picture) outputs.push_back({"--picture", *arguments.picture, ".png"});
+  check_outputs({arguments.a, arguments.b}, outputs);
+}
+
 void compare(const CompareArguments& arguments) {
+  check(arguments);
   const Rig a = normalised(load_rig(arguments.a)), b = normalised(load_rig(arguments.b));
   const pipelines::SkinQuality of_a = pipelines::skin_quality(a), of_b = pipelines::skin_quality(b);
   std::optional<metrics::SkinScores> between;
@@ -108,7 +117,7 @@ void add_compare_command(CLI::App& app) {
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("a", arguments->a, "A rigged character")->required()->type_name("FILE");
   command->add_option("b", arguments->b, "Another one, or the same mesh with other weights")->required()->type_name("FILE");
-  command->add_option("--json", arguments->json, "Also write the numbers to this file")->type_name("FILE");
+  command->add_option("--json", arguments->json, "Also write the numbers to this file (JSON)")->type_name("FILE");
   command->add_option("--picture", arguments->picture, "Also draw both, the first above (PNG)")->type_name("FILE");
   command->callback([arguments] { compare(*arguments); });
 }

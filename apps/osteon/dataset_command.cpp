@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "../outputs.h"
 #include "commands.h"
 #include "motion_folder.h"
 #include "osteon/base/parallel.h"
@@ -50,6 +51,7 @@ std::string joined(const std::string& sources, const std::string& more) {
 }
 
 void prepare(const PrepareArguments& arguments) {
+  check_outputs({}, {{"-o", arguments.output, ".safetensors"}});
   const auto entries = dataset::read_manifest(arguments.data, arguments.split);
   const MotionFolder motions = motions_for(arguments);
   std::vector<std::optional<dataset::PreparedCharacter>> results(entries.size());

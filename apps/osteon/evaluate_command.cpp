@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "../outputs.h"
 #include "calibration.h"
 #include "commands.h"
 #include "evaluation.h"
@@ -224,8 +225,18 @@ void measure(const EvaluateArguments& arguments) {
   if (!arguments.json.empty()) write_json(arguments.json, tables);
 }
 
-void evaluate(EvaluateArguments arguments) {
+void check(const EvaluateArguments& arguments) {
   if (arguments.data.empty() == arguments.predicted.empty()) throw Error("evaluate needs either two files or --data");
+  std::vector<std::filesystem::path> inputs;
+  if (arguments.data.empty()) inputs = {arguments.predicted, arguments.reference};
+  std::vector<Output> outputs;
+  if (!arguments.json.empty()) outputs.push_back({"--json", arguments.json, ".json"});
+  if (!arguments.gallery.empty()) outputs.push_back({"--gallery", arguments.gallery, ".png"});
+  check_outputs(inputs, outputs);
+}
+
+void evaluate(EvaluateArguments arguments) {
+  check(arguments);
   for (const std::string& part : arguments.without) kParts.at(part)(arguments.options);
   const std::filesystem::path& data = arguments.data;
   const std::string& split = arguments.split;
@@ -300,7 +311,7 @@ void add_evaluate_command(CLI::App& app) {
       ->capture_default_str();
   arguments->models.add_to(*command);
   command->add_option("--detail", arguments->options.detail, "How many joints to find: 0 few .. 1 many")->capture_default_str();
-  command->add_option("--json", arguments->json, "Also write the table, with every character's values, to this file");
+  command->add_option("--json", arguments->json, "Also write the table, with every character's values, to this file (JSON)");
   add_pictures(*command, *arguments, data);
   add_study_options(*command, *arguments);
   command->callback([arguments] { evaluate(*arguments); });

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "../outputs.h"
 #include "commands.h"
 #include "load_options.h"
 #include "preview.h"
@@ -19,6 +20,7 @@ struct RenderArguments {
 };
 
 void render(const RenderArguments& arguments) {
+  check_outputs({arguments.input}, {{"-o", arguments.output, ".png"}});
   const io::Asset asset = io::load(arguments.input, arguments.load);
   for (const std::string& repair : asset.repairs) spdlog::warn("{}: {}", arguments.input.string(), repair);
   save_preview(arguments.output, asset.mesh, asset.skeleton ? &*asset.skeleton : nullptr, asset.weights ? &*asset.weights : nullptr,
@@ -31,7 +33,7 @@ void add_render_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("render", "Draw a character, rigged or not, into a PNG picture");
   auto arguments = std::make_shared<RenderArguments>();
   command->add_option("input", arguments->input, "The character: any format that `rig` reads")->required()->type_name("FILE");
-  command->add_option("-o,--output", arguments->output, "The picture to write")->required()->type_name("FILE");
+  command->add_option("-o,--output", arguments->output, "The picture to write (PNG)")->required()->type_name("FILE");
   command->add_option("--pose", arguments->pose, "Show a rigged character in a random pose too: a number, or none")->capture_default_str();
   command->add_option("--size", arguments->size, "Width and height of the picture in pixels")
       ->check(CLI::Range(16, 16384))

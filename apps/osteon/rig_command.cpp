@@ -19,6 +19,7 @@ struct RigArguments {
 };
 
 void rig(const RigArguments& arguments) {
+  arguments.outputs.check(arguments.input, arguments.options, arguments.report);
   pipelines::RigReport report;
   const auto look = [&](const pipelines::RigReport& seen) {
     report = seen;

@@ -61,13 +61,6 @@ void refuse_if_poor(const fs::path& input, float confidence, float least) {
 // rig.txt knows vertices by number only: the mesh goes beside it as an OBJ, in the same order.
 fs::path obj_beside(fs::path rigtxt) { return rigtxt.replace_extension(".obj"); }
 
-void check_outputs(const fs::path& input, const RigOutputs& outputs) {
-  std::error_code missing;  // a file that is not there is not the input
-  if (outputs.rigtxt && fs::equivalent(obj_beside(*outputs.rigtxt), input, missing))
-    throw Error("--rigtxt {}: {} beside it is the input and would be overwritten; choose another name", outputs.rigtxt->string(),
-                obj_beside(*outputs.rigtxt).string());
-}
-
 void write_rig(const RigOutputs& outputs, const RigOptions& options, const io::Asset& asset, const pipelines::RignetResult& result,
                const Warn& warn) {
   pass_on(warn, outputs.glb, io::save_glb(outputs.glb, asset, result.skeleton, result.weights, options.save));
@@ -92,9 +85,23 @@ void RigOptions::add_to(CLI::App& command) {
   models.add_to(command);
 }
 
+void RigOutputs::check(const fs::path& input, const RigOptions& options, const std::optional<fs::path>& report) const {
+  std::vector<fs::path> inputs{input};
+  if (options.skeleton) inputs.push_back(*options.skeleton);
+  std::vector<Output> outputs{{"-o", glb, ".glb"}};
+  if (preview) outputs.push_back({"--preview", *preview, ".png"});
+  if (report) outputs.push_back({"--report", *report, ".json"});
+  if (rigtxt) {
+    outputs.push_back({"--rigtxt", *rigtxt, ".txt"});
+    const fs::path obj = obj_beside(*rigtxt);
+    if (fs::exists(obj) && !fs::exists(*rigtxt)) inputs.push_back(obj);  // not of an earlier rig.txt, so it is the user's
+    outputs.push_back({"--rigtxt with the mesh", obj, ".obj"});
+  }
+  check_outputs(inputs, outputs);
+}
+
 void rig_file(const fs::path& input, const RigOutputs& outputs, const RigOptions& options, const infer::RignetModels& models,
               const Warn& warn, const std::function<void(const pipelines::RigReport&)>& look) {
-  check_outputs(input, outputs);
   const io::Asset asset = io::load(input, options.load);
   pass_on(warn, input, asset.repairs);
   const auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options));

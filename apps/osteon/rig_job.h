@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "../outputs.h"
 #include "model_options.h"
 #include "osteon/io/load.h"
 #include "osteon/io/save.h"
@@ -29,6 +30,9 @@ struct RigOptions {
 struct RigOutputs {
   std::filesystem::path glb;
   std::optional<std::filesystem::path> preview, rigtxt;
+
+  // Throws Error if one of them, or `report`, would cost the user a file (outputs.h).
+  void check(const std::filesystem::path& input, const RigOptions& options, const std::optional<std::filesystem::path>& report) const;
 };
 
 // Reads a mesh, rigs it and writes the rig. What the user should know of it goes to `warn`, file names included. `look` sees how it came

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "../outputs.h"
 #include "commands.h"
 #include "load_options.h"
 #include "model_options.h"
@@ -109,6 +110,13 @@ void check(const SkinArguments& arguments) {
   if ((arguments.method == "transfer") != arguments.from.has_value())
     throw Error("--method {}: {}", arguments.method,
                 arguments.from ? "--from is for --method transfer" : "needs --from FILE, the rigged reference");
+  std::vector<std::filesystem::path> inputs{arguments.input};
+  for (const auto* file : {&arguments.skeleton, &arguments.from})
+    if (*file) inputs.push_back(**file);
+  std::vector<Output> outputs{{"-o", arguments.output, ".glb"}};
+  if (arguments.preview) outputs.push_back({"--preview", *arguments.preview, ".png"});
+  if (arguments.report) outputs.push_back({"--report", *arguments.report, ".json"});
+  check_outputs(inputs, outputs);
 }
 
 void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Binding& binding, const Chosen& chosen) {

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "../outputs.h"
 #include "commands.h"
 #include "contact_sheet.h"
 #include "osteon/io/save.h"
@@ -33,6 +34,7 @@ void make_sheet(const SynthArguments& arguments) {
 }
 
 void make(const SynthArguments& arguments) {
+  check_outputs({}, {{"-o", arguments.output, arguments.sheet > 0 ? ".png" : arguments.bare ? ".obj" : ".glb"}});
   if (arguments.sheet > 0) return make_sheet(arguments);
   if (arguments.kind.empty()) throw Error("synth: expected a kind of character, or --sheet for all kinds");
   Rig rig = synth::make_character(synth::kind_of(arguments.kind), arguments.seed, arguments.options);

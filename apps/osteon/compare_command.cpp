@@ -89,16 +89,17 @@ void save_picture(const std::filesystem::path& path, const Rig& a, const Rig& b)
   render::save_png(path, whole);
 }
 
-void check(const CompareArguments& arguments) {
+std::vector<Output> outputs_of(const CompareArguments& arguments) {
   std::vector<Output> outputs;
   if (arguments.json) outputs.push_back({"--json", *arguments.json, ".json"});
   if (arguments.picture) outputs.push_back({"--picture", *arguments.picture, ".png"});
-  check_outputs({arguments.a, arguments.b}, outputs);
+  return outputs;
 }
 
 void compare(const CompareArguments& arguments) {
-  check(arguments);
-  const Rig a = normalised(load_rig(arguments.a)), b = normalised(load_rig(arguments.b));
+  const std::vector<Output> outputs = outputs_of(arguments);
+  check_outputs({arguments.a, arguments.b}, outputs);
+  const Rig a = normalised(load_rig(arguments.a, outputs)), b = normalised(load_rig(arguments.b, outputs));
   const pipelines::SkinQuality of_a = pipelines::skin_quality(a), of_b = pipelines::skin_quality(b);
   std::optional<metrics::SkinScores> between;
   if (a.mesh.positions.size() == b.mesh.positions.size()) between = metrics::compare_weights(a, renumbered(b, a.skeleton));

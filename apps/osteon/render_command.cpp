@@ -7,6 +7,7 @@
 #include "../outputs.h"
 #include "commands.h"
 #include "load_options.h"
+#include "osteon/io/texture_files.h"
 #include "preview.h"
 
 namespace osteon::app {
@@ -22,6 +23,7 @@ struct RenderArguments {
 void render(const RenderArguments& arguments) {
   check_outputs({arguments.input}, {{"-o", arguments.output, ".png"}});
   const io::Asset asset = io::load(arguments.input, arguments.load);
+  check_outputs(io::texture_files(asset), {{"-o", arguments.output, ".png"}});
   for (const std::string& repair : asset.repairs) spdlog::warn("{}: {}", arguments.input.string(), repair);
   save_preview(arguments.output, asset.mesh, asset.skeleton ? &*asset.skeleton : nullptr, asset.weights ? &*asset.weights : nullptr,
                parse_pose(arguments.pose), {arguments.size.first, arguments.size.second});

@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "load_options.h"
 #include "osteon/io/rigtxt.h"
+#include "osteon/io/texture_files.h"
 #include "preview.h"
 
 namespace osteon::app {
@@ -103,6 +104,7 @@ void RigOutputs::check(const fs::path& input, const RigOptions& options, const s
 void rig_file(const fs::path& input, const RigOutputs& outputs, const RigOptions& options, const infer::RignetModels& models,
               const Warn& warn, const std::function<void(const pipelines::RigReport&)>& look) {
   const io::Asset asset = io::load(input, options.load);
+  if (outputs.preview) check_outputs(io::texture_files(asset), {{"--preview", *outputs.preview, ".png"}});
   pass_on(warn, input, asset.repairs);
   const auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options));
   pass_on(warn, input, result.report.repairs);

@@ -10,6 +10,7 @@
 #include "load_options.h"
 #include "model_options.h"
 #include "osteon/io/save.h"
+#include "osteon/io/texture_files.h"
 #include "osteon/pipelines/skeleton_fit.h"
 #include "osteon/pipelines/skin_character.h"
 #include "preview.h"
@@ -136,6 +137,7 @@ void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Bin
 void skin_body(const SkinArguments& arguments) {
   check(arguments);
   const io::Asset body = io::load(arguments.input, arguments.load);
+  if (arguments.preview) check_outputs(io::texture_files(body), {{"--preview", *arguments.preview, ".png"}});
   warn(arguments.input, body.repairs);
   const Chosen chosen = choose_skeleton(arguments, body);
   Rig rig{body.mesh, chosen.in_place(), {}};

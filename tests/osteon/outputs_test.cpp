@@ -80,6 +80,14 @@ TEST_F(Outputs, of_rig_txt_overwrite_the_mesh_of_an_earlier_one_alone) {
   expect_refused("rig words.txt -o x.glb --rigtxt words.txt", "words.txt would be overwritten");
 }
 
+TEST_F(Outputs, never_overwrite_a_texture) {
+  const std::string mesh = test::content(folder_ / "ball.obj");
+  std::ofstream(folder_ / "ball.mtl") << "newmtl skin\nmap_Kd ball.png\n";
+  std::ofstream(folder_ / "ball.obj") << "mtllib ball.mtl\nvt 0 0\nusemtl skin\nf 1/1 2/1 3/1\n" << mesh;
+  expect_refused("render ball.obj -o ball.png", "ball.png would be overwritten");
+  expect_refused("skin ball.obj --skeleton hero.glb -o x.glb --preview ball.png", "ball.png would be overwritten");
+}
+
 TEST_F(Outputs, need_a_folder_that_is_there) {
   expect_refused("rig ball.obj -o missing/x.glb --report x.json", "-o missing/x.glb: there is no folder missing");
   expect_refused("render ball.obj -o words.txt/x.png", "there is no folder words.txt");

@@ -98,22 +98,6 @@ Bytes decode_base64(std::string_view text, const std::string& where) {
   return out;
 }
 
-std::string decode_percent(std::string_view uri) {
-  const auto hex = [](char c) {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-  };
-  std::string out;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0) {
-      out += static_cast<char>(hex(uri[i + 1]) * 16 + hex(uri[i + 2]));
-      i += 2;
-    } else {
-      out += uri[i];
-    }
-  }
-  return out;
-}
-
 void require_version_2(const Document& document) {
   const std::string version = document.root().at("asset").at("version").text();
   if (!version.starts_with("2.")) throw Error("{}: glTF version {}, expected 2.x", document.path.filename().string(), version);
@@ -176,6 +160,22 @@ Document parse(const std::filesystem::path& path, Bytes bytes, std::vector<std::
   require_readable_vertices(document);
   fetch_buffers(document, chunks.bin);
   return document;
+}
+
+std::string decode_percent(std::string_view uri) {
+  const auto hex = [](char c) {
+    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+  };
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0) {
+      out += static_cast<char>(hex(uri[i + 1]) * 16 + hex(uri[i + 2]));
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
 }
 
 Bytes fetch(const Document& document, const std::string& uri, const std::string& where) {

@@ -29,6 +29,9 @@ bool is_gltf(std::span<const std::uint8_t> bytes);
 // or lacks a buffer.
 Document parse(const std::filesystem::path& path, Bytes bytes, std::vector<std::string>& repairs);
 
+// The text behind the percent signs of a URI: "a%20b" is "a b".
+std::string decode_percent(std::string_view uri);
+
 // The bytes behind a URI: a data: URI, or a file named relative to the document. Throws Error naming `where`.
 Bytes fetch(const Document& document, const std::string& uri, const std::string& where);
 

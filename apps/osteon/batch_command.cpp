@@ -39,6 +39,7 @@ struct BatchArguments {
 struct Job {
   fs::path input, name;  // name: of the output beside the folder's, without extension
   std::string settings;  // what the result depends on, beside the program
+  Json earlier;          // the report of an earlier run, if there is one
   Json report;           // what is, or will be, in the report's file
 };
 
@@ -96,7 +97,7 @@ std::vector<Job> jobs_of(const BatchArguments& arguments, const std::string& set
     const fs::path name = of_name[bare(file)] > 1 ? below(file) : bare(file);
     if (name.empty() || name.is_absolute() || *name.begin() == "..")
       throw Error("{}: expected a file below {}", file.string(), arguments.input.string());
-    jobs.push_back({file, name, fmt::format("{}; {}", settings, state_of(file)), {}});
+    jobs.push_back({file, name, fmt::format("{}; {}", settings, state_of(file)), {}, {}});
   }
   return jobs;
 }
@@ -130,15 +131,31 @@ void remove_leftovers(const BatchArguments& arguments, const std::vector<Job>& j
   }
 }
 
+std::string text_in(const Json& report, const char* key) {
+  const auto found = report.find(key);
+  return found != report.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+void read_earlier(const BatchArguments& arguments, Job& job) {
+  std::ifstream file(output_of(arguments, job, ".json"));
+  if (Json report = Json::parse(file, nullptr, false); report.is_object()) job.earlier = std::move(report);
+}
+
 // A report is written last, so what it tells of is whole. Failures are tried again: a disk may have been full.
 bool is_done(const BatchArguments& arguments, Job& job) {
-  std::ifstream file(output_of(arguments, job, ".json"));
-  Json report = Json::parse(file, nullptr, false);
-  if (!report.is_object() || report.value("settings", "") != job.settings) return false;
-  const std::string status = report.value("status", "");
+  if (text_in(job.earlier, "settings") != job.settings) return false;
+  const std::string status = text_in(job.earlier, "status");
   const bool done = status == "refused" || (status == "rigged" && fs::exists(output_of(arguments, job, ".glb")));
-  if (done) job.report = std::move(report);
+  if (done) job.report = job.earlier;
   return done;
+}
+
+// What an earlier run wrote, as its report tells, and this one did not write anew: a folder of GLBs never holds one that is refused now.
+void remove_earlier(const BatchArguments& arguments, const Job& job, const RigOutputs& written) {
+  if (text_in(job.earlier, "status") != "rigged") return;
+  const bool had_picture = text_in(job.earlier, "settings").find(" --previews ") != std::string::npos;
+  if (written.glb.empty()) fs::remove(output_of(arguments, job, ".glb"));
+  if (had_picture && !written.preview) fs::remove(output_of(arguments, job, ".png"));
 }
 
 // What is asked for must not cost anybody a character: no result may lie where a file of the input is, under whatever name.
@@ -157,10 +174,10 @@ void rig_job(const BatchArguments& arguments, const infer::RignetModels& models,
   Json warnings = Json::array(), seen = Json::object();
   const char* status = "rigged";
   std::string why;
+  RigOutputs outputs{output_of(arguments, job, ".glb"), {}, {}};
+  if (arguments.previews) outputs.preview = output_of(arguments, job, ".png");
   try {
-    fs::create_directories(output_of(arguments, job, ".glb").parent_path());
-    RigOutputs outputs{output_of(arguments, job, ".glb"), {}, {}};
-    if (arguments.previews) outputs.preview = output_of(arguments, job, ".png");
+    fs::create_directories(outputs.glb.parent_path());
     rig_file(
         job.input, outputs, arguments.options, models, [&](const std::string& message) { warnings.push_back(message); },
         [&](const pipelines::RigReport& report) { seen = to_json(report); });
@@ -174,6 +191,8 @@ void rig_job(const BatchArguments& arguments, const infer::RignetModels& models,
     status = "failed";
     why = e.what();
   }
+  if (status != std::string_view("rigged")) outputs = {};
+  remove_earlier(arguments, job, outputs);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   job.report = {{"osteon", OSTEON_VERSION}, {"input", job.input.string()}, {"status", status},    {"why", why},
                 {"seconds", seconds},       {"settings", job.settings},    {"messages", warnings}};
@@ -249,8 +268,10 @@ void batch(BatchArguments arguments, const std::string& settings) {
     throw Error("{}: the results would lie among the characters; choose another folder with -o", arguments.output.string());
   std::vector<Job> jobs = jobs_of(arguments, settings + state_of_models(arguments.options));
   std::vector<Job*> open;
-  for (Job& job : jobs)
+  for (Job& job : jobs) {
+    read_earlier(arguments, job);
     if (arguments.again || !is_done(arguments, job)) open.push_back(&job);
+  }
   check_outputs(arguments, jobs);
   fs::create_directories(arguments.output);
   remove_leftovers(arguments, jobs);

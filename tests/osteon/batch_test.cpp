@@ -96,6 +96,29 @@ TEST_F(BatchCommand, goes_on_after_it_was_killed) {
   for (const char* rig : kRigs) EXPECT_TRUE(content(folder_ / "out" / rig) == content(folder_ / "whole" / rig)) << rig;
 }
 
+// Whoever takes all GLBs of the folder gets none that the last run refused, or could not make.
+TEST_F(BatchCommand, leaves_no_earlier_rig_of_what_it_refuses_now) {
+  fs::create_directories(folder_ / "out");
+  ASSERT_EQ(osteon(folder_, "rig in/horse.obj -o out/horse.glb --preview out/horse.png --report out/horse.json").code, 0);
+  fs::rename(folder_ / "in/horse.obj", folder_ / "horse.obj");  // so that these are not batch's own
+  ASSERT_EQ(osteon(folder_, "batch in -o out --previews").code, 0);
+  fs::rename(folder_ / "horse.obj", folder_ / "in/horse.obj");
+  std::ofstream(folder_ / "in/far/bird.obj") << "f 1 2 3\n";
+  EXPECT_EQ(osteon(folder_, "batch in -o out --min-confidence 1").code, 2);
+  EXPECT_EQ(report("out/hero.json")["status"], "refused");
+  EXPECT_EQ(report("out/far/bird.json")["status"], "failed");
+  for (const char* gone : {"hero.glb", "hero.png", "far/bird.glb", "far/bird.png", "far/away/fish.glb", "far/away/fish.png"})
+    EXPECT_FALSE(fs::exists(folder_ / "out" / gone)) << gone;
+  for (const char* left : {"horse.glb", "horse.png"}) EXPECT_TRUE(fs::exists(folder_ / "out" / left)) << left;
+}
+
+TEST_F(BatchCommand, leaves_no_picture_of_an_earlier_rig) {
+  ASSERT_EQ(osteon(folder_, "batch in -o out --previews").code, 0);
+  ASSERT_EQ(osteon(folder_, "batch in -o out --detail 0.3").code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/hero.glb"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/hero.png"));
+}
+
 TEST_F(BatchCommand, names_that_meet_keep_their_extensions) {
   io::save_obj(folder_ / "in/hero.OBJ", synth::make_character(synth::Kind::Biped, 4, {40, synth::Finish::Faceted}).mesh);
   ASSERT_EQ(osteon(folder_, "batch in -o out").code, 0);
@@ -138,6 +161,17 @@ TEST_F(BatchCommand, never_overwrites_a_character) {
   fs::create_symlink(folder_ / "in/rigged.glb", folder_ / "out/hero.glb");
   EXPECT_THAT(osteon(folder_, "batch in -o out").err, HasSubstr("would overwrite it"));
   EXPECT_TRUE(content(folder_ / "in/rigged.glb") == before);
+}
+
+TEST_F(BatchCommand, never_overwrites_its_skeleton_or_one_result_by_another) {
+  ASSERT_EQ(osteon(folder_, "rig in/hero.obj -o hero.glb").code, 0);
+  fs::create_directories(folder_ / "out");
+  fs::rename(folder_ / "hero.glb", folder_ / "out/hero.glb");
+  const std::string before = content(folder_ / "out/hero.glb");
+  EXPECT_THAT(osteon(folder_, "batch in -o out --skeleton out/hero.glb").err, HasSubstr("would overwrite it"));
+  EXPECT_TRUE(content(folder_ / "out/hero.glb") == before);
+  for (const char* name : {"in/bird.stl", "in/bird.obj", "in/bird.obj.obj"}) fs::copy_file(folder_ / "in/far/bird.obj", folder_ / name);
+  EXPECT_THAT(osteon(folder_, "batch in -o other").err, HasSubstr("bird.obj.glb: the result of in/bird.obj.obj would overwrite it"));
 }
 
 TEST_F(BatchCommand, says_what_is_wrong_with_a_folder) {

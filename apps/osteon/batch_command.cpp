@@ -180,7 +180,7 @@ void rig_job(const BatchArguments& arguments, const infer::RignetModels& models,
     fs::create_directories(outputs.glb.parent_path());
     rig_file(
         job.input, outputs, arguments.options, models, [&](const std::string& message) { warnings.push_back(message); },
-        [&](const pipelines::RigReport& report) { seen = to_json(report); });
+        [&](const pipelines::RigReport& report, const std::vector<std::string>& changes) { seen = to_json(report, changes); });
   } catch (const Refused& e) {
     status = "refused";
     why = e.what();

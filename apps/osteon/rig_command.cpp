@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "rig_job.h"
@@ -21,9 +22,12 @@ struct RigArguments {
 void rig(const RigArguments& arguments) {
   arguments.outputs.check(arguments.input, arguments.options, arguments.report);
   pipelines::RigReport report;
-  const auto look = [&](const pipelines::RigReport& seen) {
+  const auto look = [&](const pipelines::RigReport& seen, const std::vector<std::string>& changes) {
     report = seen;
-    if (arguments.report) save_report(*arguments.report, report, arguments.input);
+    if (!arguments.report) return;
+    nlohmann::ordered_json json{{"osteon", OSTEON_VERSION}, {"input", arguments.input.string()}};
+    json.update(to_json(report, changes));
+    save_json(*arguments.report, json);
   };
   const auto models = arguments.options.models.load();
   rig_file(

@@ -62,14 +62,16 @@ void refuse_if_poor(const fs::path& input, float confidence, float least) {
 // rig.txt knows vertices by number only: the mesh goes beside it as an OBJ, in the same order.
 fs::path obj_beside(fs::path rigtxt) { return rigtxt.replace_extension(".obj"); }
 
-void write_rig(const RigOutputs& outputs, const RigOptions& options, const io::Asset& asset, const pipelines::RignetResult& result,
-               const Warn& warn) {
-  pass_on(warn, outputs.glb, io::save_glb(outputs.glb, asset, result.skeleton, result.weights, options.save));
+// Returns what that changed in the asset.
+std::vector<std::string> write_rig(const RigOutputs& outputs, const RigOptions& options, const io::Asset& asset,
+                                   const pipelines::RignetResult& result) {
+  std::vector<std::string> changes = io::save_glb(outputs.glb, asset, result.skeleton, result.weights, options.save);
   if (outputs.rigtxt) {
     io::save_rigtxt(*outputs.rigtxt, result.skeleton, result.weights);
     io::save_obj(obj_beside(*outputs.rigtxt), asset.mesh);
   }
   if (outputs.preview) save_preview(*outputs.preview, asset.mesh, &result.skeleton, &result.weights, 1);
+  return changes;
 }
 
 }  // namespace
@@ -102,16 +104,20 @@ void RigOutputs::check(const fs::path& input, const RigOptions& options, const s
 }
 
 void rig_file(const fs::path& input, const RigOutputs& outputs, const RigOptions& options, const infer::RignetModels& models,
-              const Warn& warn, const std::function<void(const pipelines::RigReport&)>& look) {
+              const Warn& warn, const Look& look) {
   const io::Asset asset = io::load(input, options.load);
   if (outputs.preview) check_outputs(io::texture_files(asset), {{"--preview", *outputs.preview, ".png"}});
   pass_on(warn, input, asset.repairs);
-  const auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options));
-  pass_on(warn, input, result.report.repairs);
-  pass_on(warn, input, result.report.warnings);
-  look(result.report);
-  refuse_if_poor(input, result.report.confidence, options.min_confidence);
-  write_rig(outputs, options, asset, result, warn);
+  auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options));
+  pipelines::RigReport& report = result.report;
+  pass_on(warn, input, report.repairs);
+  pass_on(warn, input, report.warnings);
+  report.repairs.insert(report.repairs.begin(), asset.repairs.begin(), asset.repairs.end());
+  std::vector<std::string> changes;
+  if (report.confidence >= options.min_confidence) changes = write_rig(outputs, options, asset, result);
+  pass_on(warn, outputs.glb, changes);
+  look(report, changes);
+  refuse_if_poor(input, report.confidence, options.min_confidence);
 }
 
 }  // namespace osteon::app

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "../outputs.h"
 #include "model_options.h"
@@ -35,10 +36,13 @@ struct RigOutputs {
   void check(const std::filesystem::path& input, const RigOptions& options, const std::optional<std::filesystem::path>& report) const;
 };
 
-// Reads a mesh, rigs it and writes the rig. What the user should know of it goes to `warn`, file names included. `look` sees how it came
-// about before anything is written, also where the rig is not good enough. Throws Error where a file cannot be read or written, and Refused
-// where the confidence is below options.min_confidence; then nothing is written.
+// How a rig came about, with what was mended in the file that was read, and what writing it changed in the asset.
+using Look = std::function<void(const pipelines::RigReport&, const std::vector<std::string>& changes)>;
+
+// Reads a mesh, rigs it and writes the rig. What the user should know of it goes to `warn`, file names included. `look` comes last: when
+// all is written, or nothing is as the rig is not good enough. Throws Error where a file cannot be read or written, and Refused where the
+// confidence is below options.min_confidence.
 void rig_file(const std::filesystem::path& input, const RigOutputs& outputs, const RigOptions& options, const infer::RignetModels& models,
-              const std::function<void(const std::string&)>& warn, const std::function<void(const pipelines::RigReport&)>& look);
+              const std::function<void(const std::string&)>& warn, const Look& look);
 
 }  // namespace osteon::app

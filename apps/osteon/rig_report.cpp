@@ -15,7 +15,7 @@ Json number(const std::optional<float>& value) { return value ? Json(*value) : J
 
 }  // namespace
 
-Json to_json(const pipelines::RigReport& report) {
+Json to_json(const pipelines::RigReport& report, const std::vector<std::string>& changes) {
   Json stages = Json::array();
   for (const auto& [stage, seconds] : report.stages) stages.push_back({{"stage", stage}, {"seconds", seconds}});
   return {{"vertices", report.vertices},
@@ -32,13 +32,8 @@ Json to_json(const pipelines::RigReport& report) {
           {"bandwidth", number(report.bandwidth)},
           {"stages", stages},
           {"warnings", report.warnings},
-          {"repairs", report.repairs}};
-}
-
-void save_report(const std::filesystem::path& path, const pipelines::RigReport& report, const std::filesystem::path& input) {
-  Json json{{"osteon", OSTEON_VERSION}, {"input", input.string()}};
-  json.update(to_json(report));
-  save_json(path, json);
+          {"repairs", report.repairs},
+          {"changes", changes}};
 }
 
 void save_json(const std::filesystem::path& path, const Json& json) {

@@ -120,7 +120,8 @@ void check(const SkinArguments& arguments) {
   check_outputs(inputs, outputs);
 }
 
-void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Binding& binding, const Chosen& chosen) {
+void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Binding& binding, const Chosen& chosen,
+                 const std::vector<std::string>& changes) {
   nlohmann::ordered_json json{{"osteon", OSTEON_VERSION},
                               {"input", arguments.input.string()},
                               {"method", arguments.method},
@@ -131,6 +132,7 @@ void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Bin
   json.update(to_json(pipelines::skin_quality(rig), rig.skeleton));
   json["notes"] = binding.notes;
   json["repairs"] = binding.repairs;
+  json["changes"] = changes;
   write_json(*arguments.report, json);
 }
 
@@ -141,13 +143,15 @@ void skin_body(const SkinArguments& arguments) {
   warn(arguments.input, body.repairs);
   const Chosen chosen = choose_skeleton(arguments, body);
   Rig rig{body.mesh, chosen.in_place(), {}};
-  const skin::Binding binding = bound(arguments, body, rig.skeleton);
+  skin::Binding binding = bound(arguments, body, rig.skeleton);
   rig.weights = binding.weights;
   warn(arguments.input, binding.notes);
-  warn(arguments.output, chosen.is_own
-                             ? io::save_weights(arguments.output, body, rig.weights, arguments.save)
-                             : io::save_glb(arguments.output, body, chosen.file, chosen.fit.to_body, rig.weights, arguments.save));
-  if (arguments.report) save_report(arguments, rig, binding, chosen);
+  const std::vector<std::string> changes =
+      chosen.is_own ? io::save_weights(arguments.output, body, rig.weights, arguments.save)
+                    : io::save_glb(arguments.output, body, chosen.file, chosen.fit.to_body, rig.weights, arguments.save);
+  warn(arguments.output, changes);
+  binding.repairs.insert(binding.repairs.begin(), body.repairs.begin(), body.repairs.end());
+  if (arguments.report) save_report(arguments, rig, binding, chosen, changes);
   if (arguments.preview) save_preview(*arguments.preview, rig.mesh, &rig.skeleton, &rig.weights, 1);
   spdlog::info("{}: {} vertices bound to {} joints ({})", arguments.output.string(), rig.mesh.positions.size(), rig.skeleton.size(),
                arguments.method);

@@ -173,6 +173,14 @@ TEST_F(RigCommand, a_given_skeleton_is_kept) {
     EXPECT_VEC3_NEAR(asset.skeleton->rest_positions[j], puppet.skeleton.rest_positions[j], 1e-5f);
 }
 
+TEST_F(RigCommand, the_report_tells_what_was_mended_and_what_was_changed) {
+  std::ofstream(folder_ / "hero.obj", std::ios::app) << "v nan 0 0\n";
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --report hero.json").code, 0);
+  EXPECT_THAT(test::content(folder_ / "hero.json"), HasSubstr("moved 1 vertices"));
+  ASSERT_EQ(osteon(folder_, "rig hero.glb -o again.glb --report again.json").code, 0);
+  EXPECT_THAT(test::content(folder_ / "again.json"), HasSubstr("replaced the rig"));
+}
+
 TEST_F(RigCommand, rig_txt_goes_out_with_its_mesh_but_never_over_the_input) {
   ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --rigtxt rigged.txt").code, 0);
   const io::Asset glb = io::load(folder_ / "hero.glb"), text = io::load(folder_ / "rigged.txt");

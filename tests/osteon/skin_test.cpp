@@ -180,6 +180,17 @@ TEST_F(SkinCommand, says_what_is_missing) {
   EXPECT_THAT(osteon(folder_, "skin hero.glb -o out.glb --method transfer").err, HasSubstr("--from"));
 }
 
+TEST_F(SkinCommand, the_report_tells_what_was_mended_and_what_was_changed) {
+  std::filesystem::copy_file(folder_ / "hero.glb", folder_ / "other.glb");
+  const auto run = osteon(folder_, "skin hero.glb --skeleton other.glb -o out.glb --report out.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(Json::parse(test::content(folder_ / "out.json"))["changes"].dump(), HasSubstr("replaced the rig"));
+
+  std::ofstream(folder_ / "body.obj", std::ios::app) << "v nan 0 0\n";
+  ASSERT_EQ(osteon(folder_, "skin body.obj --skeleton hero.glb -o out.glb --report out.json").code, 0);
+  EXPECT_THAT(Json::parse(test::content(folder_ / "out.json"))["repairs"].dump(), HasSubstr("to the origin"));
+}
+
 TEST_F(SkinCommand, compare_tells_a_rig_from_a_worse_one) {
   ASSERT_EQ(osteon(folder_, "skin hero.glb -o rigid.glb --method rigid").code, 0);
   const auto run = osteon(folder_, "compare hero.glb rigid.glb --json both.json --picture both.png");

@@ -2,6 +2,7 @@
 #include "rig_job.h"
 
 #include "commands.h"
+#include "given_skeleton.h"
 #include "load_options.h"
 #include "osteon/io/rigtxt.h"
 #include "osteon/io/texture_files.h"
@@ -44,11 +45,11 @@ void pass_on(const Warn& warn, const fs::path& file, const std::vector<std::stri
   for (const std::string& message : messages) warn(fmt::format("{}: {}", file.string(), message));
 }
 
-pipelines::RignetOptions pipeline_options(const RigOptions& options) {
+pipelines::RignetOptions pipeline_options(const RigOptions& options, const std::optional<GivenSkeleton>& given) {
   auto out = options.rignet;
   if (options.load.up) out.up = pipelines::Up::y;  // the file was read so that y is up
   out.skin.max_influences = static_cast<std::size_t>(options.save.max_influences);
-  if (options.skeleton) out.skeleton = io::load_skeleton(*options.skeleton, options.load);
+  if (given) out.skeleton = given->in_place();
   return out;
 }
 
@@ -64,8 +65,9 @@ fs::path obj_beside(fs::path rigtxt) { return rigtxt.replace_extension(".obj"); 
 
 // Returns what that changed in the asset.
 std::vector<std::string> write_rig(const RigOutputs& outputs, const RigOptions& options, const io::Asset& asset,
-                                   const pipelines::RignetResult& result) {
-  std::vector<std::string> changes = io::save_glb(outputs.glb, asset, result.skeleton, result.weights, options.save);
+                                   const std::optional<GivenSkeleton>& given, const pipelines::RignetResult& result) {
+  std::vector<std::string> changes = given ? io::save_glb(outputs.glb, asset, given->file, given->fit.to_body, result.weights, options.save)
+                                           : io::save_glb(outputs.glb, asset, result.skeleton, result.weights, options.save);
   if (outputs.rigtxt) {
     io::save_rigtxt(*outputs.rigtxt, result.skeleton, result.weights);
     io::save_obj(obj_beside(*outputs.rigtxt), asset.mesh);
@@ -108,13 +110,17 @@ void rig_file(const fs::path& input, const RigOutputs& outputs, const RigOptions
   const io::Asset asset = io::load(input, options.load);
   if (outputs.preview) check_outputs(io::texture_files(asset), {{"--preview", *outputs.preview, ".png"}});
   pass_on(warn, input, asset.repairs);
-  auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options));
+  std::optional<GivenSkeleton> given;
+  if (options.skeleton) given = load_given_skeleton(*options.skeleton, asset.mesh);
+  auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options, given));
   pipelines::RigReport& report = result.report;
+  if (given && !given->fit.note.empty())
+    report.warnings.insert(report.warnings.begin(), fmt::format("--skeleton {}: {}", options.skeleton->string(), given->fit.note));
   pass_on(warn, input, report.repairs);
   pass_on(warn, input, report.warnings);
   report.repairs.insert(report.repairs.begin(), asset.repairs.begin(), asset.repairs.end());
   std::vector<std::string> changes;
-  if (report.confidence >= options.min_confidence) changes = write_rig(outputs, options, asset, result);
+  if (report.confidence >= options.min_confidence) changes = write_rig(outputs, options, asset, given, result);
   pass_on(warn, outputs.glb, changes);
   look(report, changes);
   refuse_if_poor(input, report.confidence, options.min_confidence);

@@ -7,11 +7,10 @@
 
 #include "../outputs.h"
 #include "commands.h"
+#include "given_skeleton.h"
 #include "load_options.h"
 #include "model_options.h"
-#include "osteon/io/save.h"
 #include "osteon/io/texture_files.h"
-#include "osteon/pipelines/skeleton_fit.h"
 #include "osteon/pipelines/skin_character.h"
 #include "preview.h"
 #include "rigged_file.h"
@@ -42,24 +41,15 @@ void warn(const std::filesystem::path& file, const std::vector<std::string>& mes
   for (const std::string& message : messages) spdlog::warn("{}: {}", file.string(), message);
 }
 
-// The skeleton to bind to, in its own file's space, and how it comes to the body.
-struct Chosen {
-  io::SkeletonFile file;
-  pipelines::SkeletonFit fit;
-  bool is_own = false;  // of the body's file
-
-  Skeleton in_place() const { return transformed(file.skeleton, fit.to_body); }
-};
-
-Chosen choose_skeleton(const SkinArguments& arguments, const io::Asset& body) {
+// The skeleton to bind to: another file's, or the body's own.
+GivenSkeleton choose_skeleton(const SkinArguments& arguments, const io::Asset& body) {
   if (!arguments.skeleton) {
     if (!body.skeleton) throw Error("{}: has no skeleton; expected one, or --skeleton FILE", arguments.input.string());
-    return {{*body.skeleton, nullptr}, {}, true};
+    return {{*body.skeleton, nullptr}, {}};
   }
-  Chosen chosen{io::load_skeleton_file(*arguments.skeleton), {}, false};
-  chosen.fit = pipelines::fit_skeleton(chosen.file.skeleton, body.mesh);
-  if (!chosen.fit.note.empty()) spdlog::warn("{}: {}", arguments.skeleton->string(), chosen.fit.note);
-  return chosen;
+  GivenSkeleton given = load_given_skeleton(*arguments.skeleton, body.mesh);
+  if (!given.fit.note.empty()) spdlog::warn("{}: {}", arguments.skeleton->string(), given.fit.note);
+  return given;
 }
 
 JointId joint_named(const Skeleton& skeleton, const std::string& name) {
@@ -120,14 +110,14 @@ void check(const SkinArguments& arguments) {
   check_outputs(inputs, outputs);
 }
 
-void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Binding& binding, const Chosen& chosen,
+void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Binding& binding, const GivenSkeleton& given,
                  const std::vector<std::string>& changes) {
   nlohmann::ordered_json json{{"osteon", OSTEON_VERSION},
                               {"input", arguments.input.string()},
                               {"method", arguments.method},
                               {"vertices", rig.mesh.positions.size()},
                               {"joints", rig.skeleton.size()},
-                              {"skeleton_fit", chosen.fit.note},
+                              {"skeleton_fit", given.fit.note},
                               {"rigid_islands", binding.rigid_islands}};
   json.update(to_json(pipelines::skin_quality(rig), rig.skeleton));
   json["notes"] = binding.notes;
@@ -141,17 +131,17 @@ void skin_body(const SkinArguments& arguments) {
   const io::Asset body = io::load(arguments.input, arguments.load);
   if (arguments.preview) check_outputs(io::texture_files(body), {{"--preview", *arguments.preview, ".png"}});
   warn(arguments.input, body.repairs);
-  const Chosen chosen = choose_skeleton(arguments, body);
-  Rig rig{body.mesh, chosen.in_place(), {}};
+  const GivenSkeleton given = choose_skeleton(arguments, body);
+  Rig rig{body.mesh, given.in_place(), {}};
   skin::Binding binding = bound(arguments, body, rig.skeleton);
   rig.weights = binding.weights;
   warn(arguments.input, binding.notes);
   const std::vector<std::string> changes =
-      chosen.is_own ? io::save_weights(arguments.output, body, rig.weights, arguments.save)
-                    : io::save_glb(arguments.output, body, chosen.file, chosen.fit.to_body, rig.weights, arguments.save);
+      !arguments.skeleton ? io::save_weights(arguments.output, body, rig.weights, arguments.save)
+                          : io::save_glb(arguments.output, body, given.file, given.fit.to_body, rig.weights, arguments.save);
   warn(arguments.output, changes);
   binding.repairs.insert(binding.repairs.begin(), body.repairs.begin(), body.repairs.end());
-  if (arguments.report) save_report(arguments, rig, binding, chosen, changes);
+  if (arguments.report) save_report(arguments, rig, binding, given, changes);
   if (arguments.preview) save_preview(*arguments.preview, rig.mesh, &rig.skeleton, &rig.weights, 1);
   spdlog::info("{}: {} vertices bound to {} joints ({})", arguments.output.string(), rig.mesh.positions.size(), rig.skeleton.size(),
                arguments.method);

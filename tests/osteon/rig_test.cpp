@@ -173,6 +173,27 @@ TEST_F(RigCommand, a_given_skeleton_is_kept) {
     EXPECT_VEC3_NEAR(asset.skeleton->rest_positions[j], puppet.skeleton.rest_positions[j], 1e-5f);
 }
 
+// As `skin` does it: the joints' nodes as they are in their file, but for the node above them that brings them to the body.
+TEST_F(RigCommand, a_given_skeleton_goes_out_as_it_is_also_from_other_units) {
+  const Rig puppet = synth::make_character(synth::Kind::Biped, 3, {96, synth::Finish::Smooth});
+  io::Asset large;
+  large.mesh = puppet.mesh;
+  Skeleton skeleton = puppet.skeleton;
+  for (Vec3f& p : large.mesh.positions) p *= 100.0f;
+  for (Vec3f& p : skeleton.rest_positions) p *= 100.0f;
+  skeleton.names[JointId{0}] = "mixamorig:Hips";
+  io::SaveOptions as_given;
+  as_given.names = io::JointNames::as_given;
+  io::save_glb(folder_ / "large.glb", large, skeleton, puppet.weights, as_given);
+  const auto run = osteon(folder_, "rig hero.obj --skeleton large.glb -o rig.glb --report rig.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("scaled by 0.01"));
+  EXPECT_THAT(test::content(folder_ / "rig.json"), HasSubstr("scaled by 0.01"));
+  ASSERT_EQ(osteon(folder_, "skin hero.obj --skeleton large.glb --method networks -o skin.glb").code, 0);
+  EXPECT_TRUE(test::content(folder_ / "rig.glb") == test::content(folder_ / "skin.glb"));
+  EXPECT_TRUE(has_joint(io::load(folder_ / "rig.glb"), "mixamorig:Hips"));
+}
+
 TEST_F(RigCommand, the_report_tells_what_was_mended_and_what_was_changed) {
   std::ofstream(folder_ / "hero.obj", std::ios::app) << "v nan 0 0\n";
   ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --report hero.json").code, 0);

@@ -12,11 +12,11 @@
 
 #include "../outputs.h"
 #include "calibration.h"
+#include "choice.h"
 #include "commands.h"
 #include "evaluation.h"
 #include "evaluation_plots.h"
 #include "gallery.h"
-#include "load_options.h"
 #include "model_options.h"
 #include "osteon/metrics/score_table.h"
 #include "rigged_file.h"
@@ -302,10 +302,8 @@ void add_evaluate_command(CLI::App& app) {
       ->add_option_function<int>(
           "--turn", [arguments](int degrees) { arguments->turn = degrees / 90; }, "Show every character turned about the up axis")
       ->check(CLI::IsMember({0, 90, 180, 270}));
-  command->add_option("--up", arguments->up, "Show every character with this axis up")
-      ->transform(CLI::CheckedTransformer(up_axes()))
-      ->type_name("x|y|z")
-      ->default_str("y");
+  add_choice(*command, "--up", arguments->up, {{"x", io::UpAxis::x}, {"y", io::UpAxis::y}, {"z", io::UpAxis::z}},
+             "Show every character with this axis up");
   command->add_option("--scale", arguments->scale, "Show every character so much larger")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

@@ -3,10 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 
+#include "choice.h"
 #include "osteon/infer/model_folder.h"
 #include "osteon/infer/neuroskinning.h"
 #include "osteon/infer/rignet.h"
@@ -27,13 +27,8 @@ struct ModelOptions {
     CLI::Option* by_name = command.add_option("--model", name, "Which of the shipped networks: rignet (ours) or rignet-2020 (the paper's)")
                                ->capture_default_str();
     command.add_option("--models", folder, "Use the networks' weights of this folder")->type_name("FOLDER")->excludes(by_name);
-    static const std::map<std::string, tensor::Precision> precisions{{"f32", tensor::Precision::f32}, {"bf16", tensor::Precision::bf16}};
-    command
-        .add_option("--precision", precision,
-                    "Numbers that the networks multiply: f32, or bf16 on processors that have it, which is faster")
-        ->transform(CLI::CheckedTransformer(precisions))
-        ->type_name("f32|bf16")
-        ->default_str("f32");
+    add_choice(command, "--precision", precision, {{"f32", tensor::Precision::f32}, {"bf16", tensor::Precision::bf16}},
+               "Numbers that the networks multiply: f32, or bf16 on processors that have it, which is faster");
 #ifdef OSTEON_TORCH
     command.add_option("--device", device,
                        "Run the networks on LibTorch, on this device: cpu, cuda or cuda:N (default: oneDNN on the CPU)");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rig_job.h"
 
+#include "choice.h"
 #include "commands.h"
 #include "given_skeleton.h"
 #include "load_options.h"
@@ -27,18 +28,10 @@ void add_skeleton_options(CLI::App& command, RigOptions& options) {
   detail->excludes(bandwidth)->excludes(joints)->excludes(skeleton);
   bandwidth->excludes(joints)->excludes(skeleton);
   joints->excludes(skeleton);
-  static const std::map<std::string, pipelines::Fingers> fingers{{"auto", pipelines::Fingers::automatic}, {"off", pipelines::Fingers::off}};
-  command
-      .add_option("--fingers", rignet.fingers, "Rig the fingers of hands that have them, at --detail 0.4 and more (auto) or never (off)")
-      ->transform(CLI::CheckedTransformer(fingers))
-      ->type_name("auto|off")
-      ->default_str("auto");
-  static const std::map<std::string, pipelines::Symmetry> symmetries{{"auto", pipelines::Symmetry::automatic},
-                                                                     {"off", pipelines::Symmetry::off}};
-  command.add_option("--symmetry", rignet.symmetry, "Make the skeleton symmetric where the mesh is (auto) or never (off)")
-      ->transform(CLI::CheckedTransformer(symmetries))
-      ->type_name("auto|off")
-      ->default_str("auto");
+  add_choice(command, "--fingers", rignet.fingers, {{"auto", pipelines::Fingers::automatic}, {"off", pipelines::Fingers::off}},
+             "Rig the fingers of hands that have them, at --detail 0.4 and more (auto) or never (off)");
+  add_choice(command, "--symmetry", rignet.symmetry, {{"auto", pipelines::Symmetry::automatic}, {"off", pipelines::Symmetry::off}},
+             "Make the skeleton symmetric where the mesh is (auto) or never (off)");
 }
 
 void pass_on(const Warn& warn, const fs::path& file, const std::vector<std::string>& messages) {

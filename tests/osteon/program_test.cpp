@@ -31,6 +31,18 @@ TEST(Program, wrong_options_end_with_2_and_one_line) {
   }
 }
 
+TEST(Program, choices_are_made_by_name_alone) {
+  const test::TemporaryFolder folder;
+  for (const char* option : {"--fingers", "--symmetry"})
+    for (const char* value : {"0", "1", "on"})
+      EXPECT_THAT(osteon(folder, fmt::format("rig a.obj -o a.glb {} {}", option, value)).err,
+                  HasSubstr(fmt::format("{}: {} not in {{auto,off}}", option, value)));
+  EXPECT_THAT(osteon(folder, "rig a.obj -o a.glb --precision 1").err, HasSubstr("1 not in {bf16,f32}"));
+  EXPECT_THAT(osteon(folder, "rig a.obj -o a.glb --up 1").err, HasSubstr("1 not in {auto,x,y,z}"));
+  EXPECT_THAT(osteon(folder, "evaluate a.glb b.glb --up 1").err, HasSubstr("1 not in {x,y,z}"));
+  EXPECT_THAT(osteon(folder, "rig --help").out, HasSubstr("--fingers auto|off=auto"));
+}
+
 TEST(Program, bad_files_end_with_2_and_are_named) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "empty.obj");

@@ -38,6 +38,8 @@ void add_render_command(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "The picture to write (PNG)")->required()->type_name("FILE");
   command->add_option("--pose", arguments->pose, "Show a rigged character in a random pose too: a number, or none")->capture_default_str();
   command->add_option("--size", arguments->size, "Width and height of the picture in pixels")
+      ->delimiter(',')
+      ->type_name("WIDTH,HEIGHT")
       ->check(CLI::Range(16, 16384))
       ->capture_default_str();
   add_load_options(*command, arguments->load);

@@ -61,6 +61,8 @@ TEST(Program, draws_a_mesh_without_a_rig) {
   const auto run = osteon(folder, "render ball.obj -o ball.png --size 200 100");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(test::content(folder / "ball.png"), StartsWith("\x89PNG"));
+  EXPECT_EQ(osteon(folder, "render ball.obj -o same.png --size 200,100").code, 0);
+  EXPECT_TRUE(test::content(folder / "same.png") == test::content(folder / "ball.png"));
 }
 
 TEST(Program, draws_the_same_bytes_with_one_and_two_threads) {

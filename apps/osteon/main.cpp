@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/ranges.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -22,6 +23,16 @@ void send_messages_to_stderr() {
   spdlog::set_default_logger(std::move(logger));
 }
 
+// One line about what was typed. Where a command is missing, CLI11 says only that one is required.
+std::string complaint(const CLI::App* app, const CLI::Error& e) {
+  const std::vector<std::string> unknown = app->remaining(true);
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  if (app->get_require_subcommand_min() == 0) return e.what();
+  std::vector<std::string> names;
+  for (const CLI::App* command : app->get_subcommands({})) names.push_back(command->get_name());
+  return fmt::format("{}expected a command: {}", unknown.empty() ? "" : unknown.front() + ": ", fmt::join(names, ", "));
+}
+
 void add_common_options(CLI::App& app) {
   app.set_version_flag("--version", "osteon " OSTEON_VERSION);
   app.add_option_function<int>(
@@ -31,7 +42,8 @@ void add_common_options(CLI::App& app) {
       "--quiet", [] { spdlog::set_level(spdlog::level::err); }, "Only say what went wrong");
   app.fallthrough();  // the common options may also stand behind the sub-command
   app.require_subcommand(1);
-  app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {} (see --help)\n", e.what()); });
+  app.failure_message(
+      [](const CLI::App* program, const CLI::Error& e) { return fmt::format("error: {} (see --help)\n", complaint(program, e)); });
 }
 
 void add_commands(CLI::App& app) {

@@ -31,6 +31,15 @@ TEST(Program, wrong_options_end_with_2_and_one_line) {
   }
 }
 
+TEST(Program, an_unknown_command_is_named_and_so_are_those_there_are) {
+  const test::TemporaryFolder folder;
+  const auto says = [&](const char* arguments) { return osteon(folder, arguments).err; };
+  EXPECT_THAT(says("foo a.obj -o a.glb"), StartsWith("error: foo: expected a command: rig, batch, skin, "));
+  EXPECT_THAT(says(""), StartsWith("error: expected a command: rig, "));
+  EXPECT_THAT(says("dataset foo"), StartsWith("error: foo: expected a command: prepare"));
+  EXPECT_THAT(says("rig a.obj"), HasSubstr("--output is required"));
+}
+
 TEST(Program, choices_are_made_by_name_alone) {
   const test::TemporaryFolder folder;
   for (const char* option : {"--fingers", "--symmetry"})

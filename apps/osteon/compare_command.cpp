@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -45,13 +46,14 @@ SkinWeights renumbered(const Rig& from, const Skeleton& to) {
   return out;
 }
 
-void print_line(const char* name, double a, double b, int digits) {
-  fmt::print("{:<32}{:>12.{}f}{:>12.{}f}\n", name, a, digits, b, digits);
-}
-
 void print_table(const CompareArguments& arguments, const pipelines::SkinQuality& a, const pipelines::SkinQuality& b,
                  const std::optional<metrics::SkinScores>& between) {
-  fmt::print("{:<32}{:>12}{:>12}\n", "", arguments.a.stem().string(), arguments.b.stem().string());
+  const std::string name_a = arguments.a.stem().string(), name_b = arguments.b.stem().string();
+  const std::size_t width_a = std::max<std::size_t>(12, name_a.size() + 2), width_b = std::max<std::size_t>(12, name_b.size() + 2);
+  const auto print_line = [&](const char* name, double of_a, double of_b, int digits) {
+    fmt::print("{:<34}{:>{}.{}f}{:>{}.{}f}\n", name, of_a, width_a, digits, of_b, width_b, digits);
+  };
+  fmt::print("{:<34}{:>{}}{:>{}}\n", "", name_a, width_a, name_b, width_b);
   print_line("vertices without weight", static_cast<double>(a.unweighted), static_cast<double>(b.unweighted), 0);
   print_line("coverage %", 100.0 * a.coverage, 100.0 * b.coverage, 1);
   print_line("leak %", 100.0 * a.leak, 100.0 * b.leak, 2);

@@ -191,6 +191,12 @@ TEST_F(SkinCommand, the_report_tells_what_was_mended_and_what_was_changed) {
   EXPECT_THAT(Json::parse(test::content(folder_ / "out.json"))["repairs"].dump(), HasSubstr("to the origin"));
 }
 
+TEST_F(SkinCommand, compare_keeps_long_names_apart) {
+  const std::string name = "a_character_with_a_long_name";
+  std::filesystem::copy_file(folder_ / "hero.glb", folder_ / (name + ".glb"));
+  EXPECT_THAT(osteon(folder_, fmt::format("compare hero.glb {}.glb", name)).out, HasSubstr("  hero  " + name + "\n"));
+}
+
 TEST_F(SkinCommand, compare_tells_a_rig_from_a_worse_one) {
   ASSERT_EQ(osteon(folder_, "skin hero.glb -o rigid.glb --method rigid").code, 0);
   const auto run = osteon(folder_, "compare hero.glb rigid.glb --json both.json --picture both.png");

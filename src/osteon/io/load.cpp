@@ -71,6 +71,7 @@ Loose read(const std::filesystem::path& path) {
 Asset make_strict(Loose loose, const LoadOptions& options) {
   Asset asset;
   asset.repairs = std::move(loose.repairs);
+  if (loose.source.gltf) loose.source.gltf->to_world = import_transform(loose.scene, options);
   loose.source.instances = assemble(loose.scene, options, asset);
   if (!loose.source.gltf) loose.source.appearance = merged_appearance(loose.scene, loose.source.instances);
   asset.source = std::make_shared<const SourceDocument>(std::move(loose.source));

@@ -71,10 +71,13 @@ std::vector<std::string> save_weights(const std::filesystem::path& path, const A
   assert(asset.skeleton);
   check(asset, *asset.skeleton, weights, options);
   const bool from_gltf = asset.source && asset.source->gltf;
-  if (!from_gltf || !gltf::can_replace_weights(*asset.source->gltf, asset.source->instances)) {
+  if (!from_gltf || !gltf::can_replace_weights(asset.source->instances)) {
     SaveOptions as_given = options;
     as_given.names = JointNames::as_given;
-    return save_glb(path, asset, *asset.skeleton, weights, as_given);
+    std::vector<std::string> changes = save_glb(path, asset, *asset.skeleton, weights, as_given);
+    if (from_gltf)
+      changes.insert(changes.begin(), "a joint is scaled to nothing, which no mesh can be bound to; the skeleton is written anew");
+    return changes;
   }
   return save_document(path, asset, asset.skeleton->size(), [&](GltfSource& document, const auto& instances, auto& changes) {
     gltf::replace_weights(document, instances, asset.mesh, weights, options, changes);

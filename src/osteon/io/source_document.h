@@ -30,6 +30,7 @@ struct GltfSource {
   std::vector<MeshLayout> layouts;  // one for each glTF mesh
   // The vertex of Asset::mesh that each vertex of the document's instances is, one instance after the other. Empty: the same numbers.
   std::vector<VertexId> asset_vertices;
+  Eigen::Affine3d to_world = Eigen::Affine3d::Identity();  // of the file -> ours
 };
 
 // What else is known of an Asset::mesh that did not come from glTF; its layers are empty where the file had nothing.

@@ -24,15 +24,12 @@ bool is_similarity(const Eigen::Affine3d& transform) {
 
 // The transform that the inverse bind matrices can take up for all meshes. Empty: some must be rewritten in world space. Mirrored and
 // unevenly scaled ones are rewritten too, as many viewers turn neither faces nor normals for them.
-std::optional<Eigen::Affine3d> shared_transform(const std::vector<PlacedInstance>& instances, const std::vector<MeshLayout>& layouts,
-                                                Vertices vertices) {
+std::optional<Eigen::Affine3d> shared_transform(const std::vector<PlacedInstance>& instances, Vertices vertices) {
   const std::optional<Eigen::Affine3d> shared = instances.front().to_world;
   if (!shared || !is_similarity(*shared)) return std::nullopt;
   if (vertices == Vertices::bake && !shared->matrix().isIdentity(0.0)) return std::nullopt;
   for (const PlacedInstance& placed : instances) {
     if (!placed.to_world || !placed.to_world->isApprox(*shared, 1e-12)) return std::nullopt;
-    const auto& blocks = layouts[placed.instance.mesh].blocks;
-    if (std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.repaired; })) return std::nullopt;
   }
   return shared;
 }
@@ -75,15 +72,17 @@ class RigAttachment {
     const Usage before = usage();
     std::vector<std::string> told_at_load;
     const Scene scene = import_scene(document_, told_at_load).scene;
-    const OwnJoints joints(document_, scene, told_at_load);
+    OwnJoints joints(scene, told_at_load);
     const SkinWeights all = weights_;
     Writer writer(document_);
+    const std::vector<bool> rebound = skins_out_of_pose(scene);
+    joints.rebind(writer, document_, rebound, source_.to_world, changes_);
     for (std::size_t i = 0; i < instances_.size(); ++i) {
       const Scene::Instance& instance = instances_[i].instance;
       const OwnJoints::Places places = joints.complete(writer, document_, instance, used_joints(i, all), changes_);
       weights_ = renumbered(all, places.of_joint);
       joint_count_ = places.count;
-      attach(writer, scene, i, instance.node, false);
+      attach(writer, scene, i, instance.node, instance.skin && rebound[*instance.skin]);
       document_.json["nodes"][instance.node]["skin"] = places.skin;
     }
     Cleared nothing{{}, std::vector<bool>(document_.count("nodes")), std::vector<bool>(document_.count("skins")), {}};
@@ -96,7 +95,7 @@ class RigAttachment {
     std::vector<std::string> told_at_load;
     const Scene scene = import_scene(document_, told_at_load).scene;
     Cleared cleared = clear_rig(document_, scene, instances_, changes_);
-    const auto bind = shared_transform(instances_, source_.layouts, options_.vertices);
+    const auto bind = shared_transform(instances_, options_.vertices);
     Writer writer(document_);
     for (std::size_t i = 0; i < instances_.size(); ++i) attach(writer, scene, i, cleared.mesh_nodes[i], !bind);
     const JointNodes joints = add_joints(writer, bind.value_or(Eigen::Affine3d::Identity()), cleared);
@@ -114,6 +113,16 @@ class RigAttachment {
   Usage usage() const {
     Usage out;
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = used_items(document_, kKinds[k]);
+    return out;
+  }
+
+  // The skins that would show their meshes elsewhere than where they were read.
+  std::vector<bool> skins_out_of_pose(const Scene& scene) const {
+    std::vector<bool> out(scene.skins.size());
+    for (const PlacedInstance& placed : instances_) {
+      const bool placed_by_node = scene.meshes[placed.instance.mesh].influence_offsets.empty();
+      if (placed.instance.skin && (placed_by_node || !placed.to_world)) out[*placed.instance.skin] = true;
+    }
     return out;
   }
 
@@ -159,7 +168,10 @@ class RigAttachment {
       const MeshLayout::Block& block = layout.blocks[*part.block];
       const std::vector<VertexId> vertices = vertices_of(placed, block);
       Json primitive = mesh.at("primitives").at(p);
-      if (rewrite || block.repaired) baker.bake(primitive, block, positions_of(vertices));
+      if (rewrite)
+        baker.bake(primitive, block, positions_of(vertices));
+      else if (block.repaired)
+        baker.repair(primitive, block);
       const bool mirrored = placed.to_world && placed.to_world->linear().determinant() < 0.0;
       if (part.faces_dropped || (rewrite && mirrored && part.face_count > 0)) rewrite_faces(writer, primitive, placed, part, block);
       if (skin_attributes[*part.block].is_null())
@@ -260,10 +272,9 @@ class RigAttachment {
 
 }  // namespace
 
-bool can_replace_weights(const GltfSource& source, const std::vector<PlacedInstance>& instances) {
-  return std::ranges::all_of(instances, [&](const PlacedInstance& placed) {
-    const auto& blocks = source.layouts[placed.instance.mesh].blocks;
-    return placed.to_world && std::ranges::none_of(blocks, [](const auto& b) { return b.repaired; });
+bool can_replace_weights(const std::vector<PlacedInstance>& instances) {
+  return std::ranges::all_of(instances, [](const PlacedInstance& placed) {
+    return std::ranges::all_of(placed.joint_to_world, [](const Eigen::Affine3d& m) { return m.linear().fullPivLu().isInvertible(); });
   });
 }
 

@@ -81,6 +81,11 @@ std::size_t Baker::bake_normal_changes(const Json& change, const Json& normals, 
   return writer_.vectors(values, 3, Target::vertices);
 }
 
+void Baker::repair(Json& primitive, const MeshLayout::Block& block) {
+  replace(primitive.at("attributes"), "POSITION", "POSITION",
+          [&] { return writer_.positions(std::span(mesh_.positions).subspan(block.first, block.count)); });
+}
+
 void Baker::bake(Json& primitive, const MeshLayout::Block& block, std::span<const Vec3f> positions) {
   Json& attributes = primitive.at("attributes");
   const Json old = attributes;

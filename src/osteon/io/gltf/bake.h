@@ -20,6 +20,9 @@ class Baker {
   // `primitive` is the JSON to change; `positions` are those of its block, world space.
   void bake(Json& primitive, const MeshLayout::Block& block, std::span<const Vec3f> positions);
 
+  // Rewrites nothing but POSITION, in the mesh's own space, as it was repaired.
+  void repair(Json& primitive, const MeshLayout::Block& block);
+
  private:
   using Rewrite = std::function<std::size_t()>;
   void replace(Json& attributes, const char* name, const std::string& rule, const Rewrite& rewrite);

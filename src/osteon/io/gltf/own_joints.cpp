@@ -29,10 +29,41 @@ std::vector<float> matrices_of(const Document& document, const Json& skin, std::
 
 }  // namespace
 
-OwnJoints::OwnJoints(const Document&, const Scene& scene, std::vector<std::string>& repairs) : scene_(scene) {
+OwnJoints::OwnJoints(const Scene& scene, std::vector<std::string>& repairs) : scene_(scene) {
   const auto tree = joint_tree(scene, repairs);
   assert(tree);
   node_of_ = nodes_of_joints(*tree, tree->skeleton.size());
+}
+
+void OwnJoints::rebind(Writer& writer, Document& document, const std::vector<bool>& skins, const Eigen::Affine3d& to_world,
+                       std::vector<std::string>& changes) {
+  for (std::size_t s = 0; s < skins.size(); ++s) {
+    if (!skins[s]) continue;
+    leave_to_others(document, s);
+    std::vector<float> matrices;
+    for (std::size_t j = 0; j < scene_.skins[s].joints.size(); ++j) {
+      Eigen::Affine3d& inverse_bind = scene_.skins[s].inverse_binds[j];
+      inverse_bind = scene_.nodes[scene_.skins[s].joints[j]].world.inverse() * to_world.inverse();
+      append(matrices, inverse_bind);
+    }
+    document.json["skins"][s]["inverseBindMatrices"] = writer.vectors(matrices, 16, Target::none);
+    changes.push_back(fmt::format("skin {} was not in its bind pose; its meshes are bound as they stand", s));
+  }
+}
+
+void OwnJoints::leave_to_others(Document& document, std::size_t skin) const {
+  Json& skins = document.json["skins"];
+  std::optional<std::size_t> copy;
+  for (std::size_t n = 0; n < scene_.nodes.size(); ++n) {
+    Json& node = document.json["nodes"][n];
+    if (!node.contains("skin") || node["skin"].get<std::size_t>() != skin) continue;
+    if (std::ranges::any_of(scene_.instances, [&](const Scene::Instance& instance) { return instance.node == n; })) continue;
+    if (!copy) {
+      copy = skins.size();
+      skins.push_back(Json(skins[skin]));
+    }
+    node["skin"] = *copy;
+  }
 }
 
 OwnJoints::Places OwnJoints::complete(Writer& writer, Document& document, const Scene::Instance& instance, const std::vector<bool>& used,

@@ -13,7 +13,12 @@ namespace osteon::io::gltf {
 // The joints that a document has already, as io::joint_tree numbers them.
 class OwnJoints {
  public:
-  OwnJoints(const Document& document, const Scene& scene, std::vector<std::string>& repairs);
+  OwnJoints(const Scene& scene, std::vector<std::string>& repairs);
+
+  // Gives the marked skins inverse bind matrices for vertices in the world that `to_world` leads to from the file's. Meshes outside the
+  // scene, which nobody rewrites, keep the skin as it was, in a copy.
+  void rebind(Writer& writer, Document& document, const std::vector<bool>& skins, const Eigen::Affine3d& to_world,
+              std::vector<std::string>& changes);
 
   struct Places {
     std::size_t skin;               // in the document
@@ -26,7 +31,9 @@ class OwnJoints {
                   std::vector<std::string>& changes) const;
 
  private:
-  const Scene& scene_;
+  void leave_to_others(Document& document, std::size_t skin) const;
+
+  Scene scene_;
   std::vector<std::optional<std::size_t>> node_of_;  // by JointId
 };
 

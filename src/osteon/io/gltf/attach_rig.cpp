@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "osteon/base/error.h"
+#include "osteon/io/gltf/attachments.h"
 #include "osteon/io/gltf/bake.h"
 #include "osteon/io/gltf/import.h"
 #include "osteon/io/gltf/joint_nodes.h"
@@ -85,7 +86,7 @@ class RigAttachment {
       attach(writer, scene, i, instance.node, instance.skin && rebound[*instance.skin]);
       document_.json["nodes"][instance.node]["skin"] = places.skin;
     }
-    Cleared nothing{{}, std::vector<bool>(document_.count("nodes")), std::vector<bool>(document_.count("skins")), {}};
+    Cleared nothing{{}, std::vector<bool>(document_.count("nodes")), std::vector<bool>(document_.count("skins")), {}, {}};
     remove_what_became_unused(nothing, before);
   }
 
@@ -99,6 +100,7 @@ class RigAttachment {
     Writer writer(document_);
     for (std::size_t i = 0; i < instances_.size(); ++i) attach(writer, scene, i, cleared.mesh_nodes[i], !bind);
     const JointNodes joints = add_joints(writer, bind.value_or(Eigen::Affine3d::Identity()), cleared);
+    hang_attachments(document_, scene, source_.to_world, cleared.attachments, joints, changes_);
     for (const std::size_t n : cleared.mesh_nodes)
       if (document_.json["nodes"][n].contains("mesh")) document_.json["nodes"][n]["skin"] = joints.skin;
     for (std::size_t s = 0; s < cleared.scenes_with_mesh.size(); ++s)

@@ -125,7 +125,9 @@ JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& s
   const std::size_t matrices = writer.vectors(inverse_binds, 16, Target::none);
   Json& skins = document.json["skins"];
   skins.push_back(Json{{"inverseBindMatrices", matrices}, {"joints", joints}, {"skeleton", first}});
-  return {first, skins.size() - 1};
+  JointNodes out{first, skins.size() - 1, {}};
+  for (const JointId j : worlds.ids()) out.joints.push_back({first + index(j), worlds[j]});
+  return out;
 }
 
 std::vector<JointId> places_in_skin(const SkeletonSource& skeleton) {
@@ -160,17 +162,19 @@ JointNodes copy_joint_nodes(Writer& writer, Document& document, const SkeletonSo
     above = local_transform(Element(node, "node"));
     root = nodes.size() - 1;
   }
+  JointNodes out{root, document.count("skins"), {}};
   std::vector<float> inverse_binds;
   Json joints = Json::array();
   for (const auto& n : skeleton.node_of_joint) {
     if (!n) continue;
     joints.push_back(copy_of[*n]);
-    const Eigen::Matrix4f inverse = ((above * scene.nodes[*n].world).inverse() * bind).matrix().cast<float>();
+    out.joints.push_back({copy_of[*n], above * scene.nodes[*n].world});
+    const Eigen::Matrix4f inverse = (out.joints.back().world.inverse() * bind).matrix().cast<float>();
     inverse_binds.insert(inverse_binds.end(), inverse.data(), inverse.data() + 16);
   }
   const std::size_t matrices = writer.vectors(inverse_binds, 16, Target::none);
   document.json["skins"].push_back(Json{{"inverseBindMatrices", matrices}, {"joints", joints}});
-  return {root, document.json["skins"].size() - 1};
+  return out;
 }
 
 }  // namespace osteon::io::gltf

@@ -13,6 +13,11 @@ namespace osteon::io::gltf {
 struct JointNodes {
   std::size_t root;  // node, to be listed in the scene
   std::size_t skin;
+  struct Joint {
+    std::size_t node;
+    Eigen::Affine3d world;  // as a reader of the file computes it
+  };
+  std::vector<Joint> joints;  // of the skin
 };
 
 // Appends a node for each joint and a skin of them all. `bind` brings the vertices to world space before the joints move them.

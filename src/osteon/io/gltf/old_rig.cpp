@@ -22,6 +22,26 @@ void set_list(Json& object, const char* key, const std::vector<std::size_t>& lis
     object[key] = list;
 }
 
+bool describes_rig(const std::string& extension) {
+  return extension == "VRM" || (extension.starts_with("VRMC_") && !extension.starts_with("VRMC_materials_"));
+}
+
+// A camera, a mesh, a light or what else extensions know.
+bool shows_something(const Json& node) {
+  if (node.contains("camera") || node.contains("mesh")) return true;
+  if (!node.contains("extensions")) return false;
+  const auto extensions = node["extensions"].items();
+  return std::any_of(extensions.begin(), extensions.end(), [](const auto& extension) { return !describes_rig(extension.key()); });
+}
+
+// 'one', 'two'; the number of those without a name.
+std::string listed(const Json& animations, const std::vector<std::size_t>& which) {
+  std::string out;
+  for (const std::size_t a : which)
+    out += fmt::format("{}'{}'", out.empty() ? "" : ", ", animations[a].value("name", fmt::format("animations[{}]", a)));
+  return out;
+}
+
 class RigRemoval {
  public:
   RigRemoval(Document& document, const Scene& scene, const std::vector<PlacedInstance>& instances, std::vector<std::string>& changes)
@@ -30,7 +50,7 @@ class RigRemoval {
   Cleared run() {
     find_tree();
     mark_old_skins();
-    mark_under_old_joints();
+    mark_joints();
     mark_removed();
     const std::vector<std::vector<std::size_t>> scenes = scenes_of_instances();
     std::map<std::size_t, std::size_t> moved_to;
@@ -45,7 +65,9 @@ class RigRemoval {
  private:
   struct Node {
     std::vector<std::size_t> children;
-    bool under_old_joint = false, has_mesh = false, had_children = false;
+    bool is_old_joint = false, is_kept_joint = false;
+    bool has_mesh = false, had_children = false;
+    bool is_attachment = false, holds_kept_joint = false;
   };
 
   // The tree as the importer took it: broken links left out, children in order, parents before children in order_.
@@ -79,41 +101,33 @@ class RigRemoval {
     }
   }
 
-  void mark_under_old_joints() {
+  void mark_joints() {
     for (std::size_t s = 0; s < scene_.skins.size(); ++s)
-      if (cleared_.removed_skins[s])
-        for (const std::size_t joint : scene_.skins[s].joints) nodes_[joint].under_old_joint = true;
-    for (std::size_t s = 0; s < scene_.skins.size(); ++s)
-      if (!cleared_.removed_skins[s])
-        for (const std::size_t joint : scene_.skins[s].joints) nodes_[joint].under_old_joint = false;
-    for (const std::size_t n : order_)
-      for (const std::size_t child : nodes_[n].children)
-        nodes_[child].under_old_joint |= nodes_[n].under_old_joint && !is_kept_joint(child);
+      for (const std::size_t joint : scene_.skins[s].joints)
+        (cleared_.removed_skins[s] ? nodes_[joint].is_old_joint : nodes_[joint].is_kept_joint) = true;
+    for (Node& node : nodes_) node.is_old_joint = node.is_old_joint && !node.is_kept_joint;
+    const auto joints = std::ranges::count_if(nodes_, [](const Node& node) { return node.is_old_joint; });
+    if (joints > 0) changes_.push_back(fmt::format("replaced the rig that the asset had ({} joints)", joints));
   }
 
-  bool is_kept_joint(std::size_t node) const {
-    for (std::size_t s = 0; s < scene_.skins.size(); ++s)
-      if (!cleared_.removed_skins[s] &&
-          std::find(scene_.skins[s].joints.begin(), scene_.skins[s].joints.end(), node) != scene_.skins[s].joints.end())
-        return true;
-    return false;
-  }
-
-  // Old joints and what stood above them or above meshes and now holds nothing.
+  // Old joints and what stood above them or above meshes and now holds nothing. What hung from old joints is taken out, children before
+  // parents, but for the joints of skins that stay: these, and what stands above them, keep their place.
   void mark_removed() {
-    std::size_t joints = 0;
     for (std::size_t i = order_.size(); i-- > 0;) {
       const std::size_t n = order_[i];
       Node& node = nodes_[n];
-      std::erase_if(node.children, [&](std::size_t c) { return cleared_.removed_nodes[c] || moves(c); });
+      std::erase_if(node.children, [&](std::size_t c) { return cleared_.removed_nodes[c] || nodes_[c].is_attachment || moves(c); });
+      node.holds_kept_joint =
+          node.is_kept_joint || std::ranges::any_of(node.children, [&](std::size_t c) { return nodes_[c].holds_kept_joint; });
       const Json& json = json_["nodes"][n];
-      const bool holds_something = node.has_mesh || json.contains("camera") || json.contains("mesh") || json.contains("extensions") ||
-                                   !node.children.empty() || (json.contains("extras") && !node.under_old_joint) || is_kept_joint(n);
-      if (holds_something || !(node.under_old_joint || node.had_children)) continue;
-      cleared_.removed_nodes[n] = true;
-      joints += node.under_old_joint ? 1 : 0;
+      const bool stays = node.has_mesh || shows_something(json) || !node.children.empty() || node.is_kept_joint ||
+                         !(node.is_old_joint || (node.had_children && !json.contains("extras")));
+      const std::optional<std::size_t> parent = scene_.nodes[n].parent;
+      cleared_.removed_nodes[n] = !stays;
+      node.is_attachment = stays && !moves(n) && !node.holds_kept_joint && (node.is_old_joint || (parent && nodes_[*parent].is_old_joint));
+      if (node.is_attachment) cleared_.attachments.push_back({n, node.is_old_joint ? n : *parent});
     }
-    if (joints > 0) changes_.push_back(fmt::format("replaced the rig that the asset had ({} joints)", joints));
+    std::ranges::reverse(cleared_.attachments);
   }
 
   // A mesh's own node goes to the top of the scene if nothing hangs below it; else a new node takes the mesh there. Children come before
@@ -162,7 +176,7 @@ class RigRemoval {
     if (!json_.contains("scenes")) {
       std::vector<std::size_t> roots;
       for (const std::size_t n : order_)
-        if (!scene_.nodes[n].parent && !cleared_.removed_nodes[n]) roots.push_back(n);
+        if (!scene_.nodes[n].parent && !cleared_.removed_nodes[n] && !nodes_[n].is_attachment) roots.push_back(n);
       json_["scene"] = 0;
       json_["scenes"] = Json::array({Json{{"nodes", roots}}});
     }
@@ -186,7 +200,7 @@ class RigRemoval {
     const auto& meshes = cleared_.mesh_nodes;
     for (const Json& root : scene["nodes"])
       if (const auto n = root.get<std::size_t>();
-          !cleared_.removed_nodes.at(n) && std::find(meshes.begin(), meshes.end(), n) == meshes.end())
+          !cleared_.removed_nodes.at(n) && !nodes_[n].is_attachment && std::find(meshes.begin(), meshes.end(), n) == meshes.end())
         roots.push_back(n);
     return roots;
   }
@@ -195,8 +209,9 @@ class RigRemoval {
   void filter_animations(const std::map<std::size_t, std::size_t>& moved_to) {
     if (!json_.contains("animations")) return;
     Json kept_animations = Json::array();
-    std::size_t cut = 0;
-    for (Json& animation : json_["animations"]) {
+    std::vector<std::size_t> cut, removed;
+    for (std::size_t a = 0; a < json_["animations"].size(); ++a) {
+      Json animation = json_["animations"][a];
       Json kept = Json::array();
       for (Json& channel : animation.at("channels")) {
         Json& target = channel.at("target");
@@ -205,18 +220,22 @@ class RigRemoval {
           const bool transform = is_transform(target.value("path", ""));
           const auto mesh = moved_to.find(n);
           if (n >= nodes_.size() || cleared_.removed_nodes[n] ||
-              (transform && (nodes_[n].under_old_joint || (mesh != moved_to.end() && mesh->second == n))))
+              (transform && (nodes_[n].is_old_joint || (mesh != moved_to.end() && mesh->second == n))))
             continue;
           if (!transform && mesh != moved_to.end()) target["node"] = mesh->second;
         }
         kept.push_back(channel);
       }
-      if (kept.size() != animation["channels"].size()) ++cut;
+      if (kept.size() != animation["channels"].size()) (kept.empty() ? removed : cut).push_back(a);
       if (kept.empty()) continue;
       keep_used_samplers(animation, kept);
       kept_animations.push_back(std::move(animation));
     }
-    if (cut > 0) changes_.push_back(fmt::format("removed what moved the replaced rig from {} animations", cut));
+    if (!removed.empty())
+      changes_.push_back(
+          fmt::format("removed animations that moved only what the new rig moves now: {}", listed(json_["animations"], removed)));
+    if (!cut.empty())
+      changes_.push_back(fmt::format("removed from animations what the new rig moves now: {}", listed(json_["animations"], cut)));
     if (kept_animations.empty())
       json_.erase("animations");
     else
@@ -238,9 +257,6 @@ class RigRemoval {
   }
 
   void drop_rig_extensions() {
-    const auto describes_rig = [](const std::string& name) {
-      return name == "VRM" || (name.starts_with("VRMC_") && !name.starts_with("VRMC_materials_"));
-    };
     const auto drop_from = [&](Json& object) {
       if (!object.is_object() || !object.contains("extensions")) return;
       Json kept = Json::object();

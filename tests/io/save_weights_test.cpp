@@ -98,6 +98,30 @@ TEST(SaveWeights, vertices_that_are_not_finite_are_repaired_and_the_skin_stays) 
   EXPECT_THAT(rebound.changes, testing::IsEmpty());
 }
 
+TEST(SaveWeights, a_file_read_in_other_units_and_turned_upright_comes_out_so_by_a_node_above_its_roots) {
+  const LoadOptions z_up_in_centimetres{.up = UpAxis::z, .scale = 0.01f};
+  for (gltf::Document document : {skinned_tetrahedron_document(), posed_document()}) {
+    document.json["nodes"].push_back({{"name", "lamp"}, {"translation", {0, 0, 300}}});
+    const std::size_t lamp = document.json["nodes"].size() - 1;
+    document.json["scenes"][0]["nodes"].push_back(lamp);
+    const Rebound rebound = bound_to_first_joint(document, z_up_in_centimetres);
+    expect_same_places(rebound.before, rebound.after);
+    for (std::size_t n = 0; n <= lamp; ++n) EXPECT_EQ(rebound.is["nodes"][n], rebound.was["nodes"][n]);
+    EXPECT_EQ(rebound.is["scenes"][0]["nodes"], Json({0, lamp + 1, lamp + 2})) << "the mesh follows its joints";
+    EXPECT_EQ(rebound.is["nodes"][lamp + 1]["children"], Json({1}));
+    EXPECT_EQ(rebound.is["nodes"][lamp + 2]["children"], Json({lamp}));
+    EXPECT_TRUE(has_repair(rebound.changes, "scaled and turned to metres and y up by a node above each root"));
+  }
+}
+
+TEST(SaveWeights, a_mesh_without_skin_is_bound_where_it_stands_in_a_file_that_is_scaled) {
+  gltf::Document document = skinned_tetrahedron_document();
+  document.json["nodes"].push_back({{"name", "sword"}, {"mesh", 0}, {"translation", {0, 5, 0}}});
+  document.json["nodes"][2]["children"] = {3};
+  const Rebound rebound = bound_to_first_joint(document, {.up = {}, .scale = 2.0f});
+  expect_same_places(rebound.before, rebound.after);
+}
+
 TEST(SaveWeights, a_joint_scaled_to_nothing_has_the_skeleton_written_anew) {
   gltf::Document document = posed_document();
   document.json["nodes"][2]["scale"] = {0, 0, 0};

@@ -48,8 +48,9 @@ std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset
 
 // Writes an asset that came from glTF with other weights for the skeleton that it has: everything else, joints, inverse bind matrices and
 // animations too, stays as it was. Returns what had to be changed beyond that: a skin that lacks joints which the weights need gets them at
-// its end; meshes that do not stand in their bind pose are rewritten as they stand, which becomes their bind pose. Only where a joint is
-// scaled to nothing, which no mesh can be bound to, the skeleton is replaced as by save_glb. Pre: asset.skeleton is there.
+// its end; meshes that do not stand in their bind pose are rewritten as they stand, which becomes their bind pose; units and up axis of
+// LoadOptions are brought to ours by a node above each root. Only where a joint is scaled to nothing, which no mesh can be bound to, the
+// skeleton is replaced as by save_glb. Pre: asset.skeleton is there.
 std::vector<std::string> save_weights(const std::filesystem::path& path, const Asset& asset, const SkinWeights& weights,
                                       const SaveOptions& options = {});
 

@@ -13,6 +13,7 @@
 #include "osteon/io/gltf/references.h"
 #include "osteon/io/gltf/single_buffer.h"
 #include "osteon/io/gltf/skin_attributes.h"
+#include "osteon/io/gltf/world.h"
 
 namespace osteon::io::gltf {
 namespace {
@@ -85,6 +86,10 @@ class RigAttachment {
       joint_count_ = places.count;
       attach(writer, scene, i, instance.node, instance.skin && rebound[*instance.skin]);
       document_.json["nodes"][instance.node]["skin"] = places.skin;
+    }
+    if (!source_.to_world.matrix().isIdentity(0.0)) {
+      bring_to_world(document_, scene, source_.to_world);
+      changes_.push_back("scaled and turned to metres and y up by a node above each root; joints and clips stay as they are");
     }
     Cleared nothing{{}, std::vector<bool>(document_.count("nodes")), std::vector<bool>(document_.count("skins")), {}, {}};
     remove_what_became_unused(nothing, before);

@@ -86,6 +86,8 @@ Json stripped_node(Json node, const std::vector<bool>& wanted, const std::vector
   return node;
 }
 
+}  // namespace
+
 Json fitted_node(const std::string& name, const Eigen::Affine3d& fit, const std::vector<std::size_t>& children) {
   const double scale = std::cbrt(fit.linear().determinant());
   const Eigen::Quaternionf q = Eigen::Quaterniond(fit.linear() / scale).normalized().cast<float>();
@@ -97,8 +99,6 @@ Json fitted_node(const std::string& name, const Eigen::Affine3d& fit, const std:
               {"rotation", {q.x(), q.y(), q.z(), q.w()}},
               {"scale", {s, s, s}}};
 }
-
-}  // namespace
 
 JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& skeleton, const Eigen::Affine3d& bind, JointNames naming,
                            std::set<std::string> names, std::vector<std::string>& changes) {

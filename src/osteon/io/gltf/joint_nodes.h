@@ -31,6 +31,9 @@ JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& s
 JointNodes copy_joint_nodes(Writer& writer, Document& document, const SkeletonSource& skeleton, const Eigen::Affine3d& fit,
                             const Eigen::Affine3d& bind);
 
+// The node above others that applies `fit`, a similarity.
+Json fitted_node(const std::string& name, const Eigen::Affine3d& fit, const std::vector<std::size_t>& children);
+
 // Which place in the skin of copy_joint_nodes each joint has; joints without a node have that of the first.
 std::vector<JointId> places_in_skin(const SkeletonSource& skeleton);
 

@@ -24,7 +24,8 @@ void render(const RenderArguments& arguments) {
   check_outputs({arguments.input}, {{"-o", arguments.output, ".png"}});
   const io::Asset asset = io::load(arguments.input, arguments.load);
   check_outputs(io::texture_files(asset), {{"-o", arguments.output, ".png"}});
-  for (const std::string& repair : asset.repairs) spdlog::warn("{}: {}", arguments.input.string(), repair);
+  for (const auto& repairs : {asset.repairs, asset.rig_repairs})
+    for (const std::string& repair : repairs) spdlog::warn("{}: {}", arguments.input.string(), repair);
   save_preview(arguments.output, asset.mesh, asset.skeleton ? &*asset.skeleton : nullptr, asset.weights ? &*asset.weights : nullptr,
                parse_pose(arguments.pose), {arguments.size.first, arguments.size.second});
 }

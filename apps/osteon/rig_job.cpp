@@ -5,6 +5,8 @@
 #include "commands.h"
 #include "given_skeleton.h"
 #include "load_options.h"
+#include "load_upright.h"
+#include "naming.h"
 #include "osteon/io/rigtxt.h"
 #include "osteon/io/texture_files.h"
 #include "preview.h"
@@ -38,9 +40,9 @@ void pass_on(const Warn& warn, const fs::path& file, const std::vector<std::stri
   for (const std::string& message : messages) warn(fmt::format("{}: {}", file.string(), message));
 }
 
-pipelines::RignetOptions pipeline_options(const RigOptions& options, const std::optional<GivenSkeleton>& given) {
+pipelines::RignetOptions pipeline_options(const RigOptions& options, const io::Asset& asset, const std::optional<GivenSkeleton>& given) {
   auto out = options.rignet;
-  if (options.load.up) out.up = pipelines::Up::y;  // the file was read so that y is up
+  if (options.load.up || asset.up != io::UpAxis::y) out.up = pipelines::Up::y;  // the file was read so that y is up
   out.skin.max_influences = static_cast<std::size_t>(options.save.max_influences);
   if (given) out.skeleton = given->in_place();
   return out;
@@ -100,12 +102,14 @@ void RigOutputs::check(const fs::path& input, const RigOptions& options, const s
 
 void rig_file(const fs::path& input, const RigOutputs& outputs, const RigOptions& options, const infer::RignetModels& models,
               const Warn& warn, const Look& look) {
-  const io::Asset asset = io::load(input, options.load);
+  io::Asset asset = load_upright(input, options.load);
   if (outputs.preview) check_outputs(io::texture_files(asset), {{"--preview", *outputs.preview, ".png"}});
   pass_on(warn, input, asset.repairs);
   std::optional<GivenSkeleton> given;
   if (options.skeleton) given = load_given_skeleton(*options.skeleton, asset.mesh);
-  auto result = pipelines::rig_character(asset.mesh, models, pipeline_options(options, given));
+  const auto how = pipeline_options(options, asset, given);
+  auto result = naming(input, [&] { return pipelines::rig_character(asset.mesh, models, how); });
+  stand_up(asset, result);
   pipelines::RigReport& report = result.report;
   if (given && !given->fit.note.empty())
     report.warnings.insert(report.warnings.begin(), fmt::format("--skeleton {}: {}", options.skeleton->string(), given->fit.note));

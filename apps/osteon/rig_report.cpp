@@ -21,7 +21,7 @@ Json to_json(const pipelines::RigReport& report, const std::vector<std::string>&
   return {{"vertices", report.vertices},
           {"working_vertices", report.working_vertices},
           {"joints", report.joints},
-          {"up", report.is_z_up ? "z" : "y"},
+          {"up", std::string(1, report.up)},
           {"confidence", report.confidence},
           {"character", number(report.character)},
           {"joint_confidence", report.joint_confidence},

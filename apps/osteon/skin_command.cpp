@@ -9,7 +9,9 @@
 #include "commands.h"
 #include "given_skeleton.h"
 #include "load_options.h"
+#include "load_upright.h"
 #include "model_options.h"
+#include "naming.h"
 #include "osteon/io/texture_files.h"
 #include "osteon/pipelines/skin_character.h"
 #include "preview.h"
@@ -80,21 +82,22 @@ skin::Binding bound(const SkinArguments& arguments, const io::Asset& body, const
   options.bind.max_influences = static_cast<std::size_t>(arguments.save.max_influences);
   if (arguments.deform_islands) options.bind.islands = skin::Islands::deform;
   lock_joints(arguments, body, skeleton, options.bind);
+  const auto run = [&] { return naming(arguments.input, [&] { return pipelines::skin_character(body.mesh, skeleton, options); }); };
   if (arguments.from) options.bind.from = load_rig(*arguments.from);
   if (arguments.method == "rignet" || arguments.method == "networks") {
     const infer::RignetModels models = arguments.models.load();
     options.rignet = &models;
     if (arguments.method == "networks" && !(options.neuroskinning = models.neuroskinning()))
       throw Error("--method networks: the models have no neuroskinning.safetensors, expected both networks (or --method rignet)");
-    return pipelines::skin_character(body.mesh, skeleton, options);
+    return run();
   }
   if (arguments.method == "neuroskinning") {
     const infer::NeuroskinningModel model = arguments.models.load_neuroskinning();
     options.neuroskinning = &model;
-    return pipelines::skin_character(body.mesh, skeleton, options);
+    return run();
   }
   options.bind.method = kMethods.at(arguments.method);
-  return pipelines::skin_character(body.mesh, skeleton, options);
+  return run();
 }
 
 void check(const SkinArguments& arguments) {
@@ -128,9 +131,10 @@ void save_report(const SkinArguments& arguments, const Rig& rig, const skin::Bin
 
 void skin_body(const SkinArguments& arguments) {
   check(arguments);
-  const io::Asset body = io::load(arguments.input, arguments.load);
+  const io::Asset body = load_upright(arguments.input, arguments.load);
   if (arguments.preview) check_outputs(io::texture_files(body), {{"--preview", *arguments.preview, ".png"}});
   warn(arguments.input, body.repairs);
+  if (!arguments.skeleton || !arguments.locked.empty()) warn(arguments.input, body.rig_repairs);
   const GivenSkeleton given = choose_skeleton(arguments, body);
   Rig rig{body.mesh, given.in_place(), {}};
   skin::Binding binding = bound(arguments, body, rig.skeleton);

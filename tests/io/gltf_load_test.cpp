@@ -144,7 +144,7 @@ TEST(GltfLoad, two_root_joints_get_one_above_them) {
   const Asset asset = load_document(document);
   EXPECT_EQ(asset.skeleton->size(), 3u);
   EXPECT_EQ(asset.skeleton->names[JointId{0}], "root");
-  EXPECT_TRUE(has_repair(asset.repairs, "2 root joints; joined under a new one"));
+  EXPECT_TRUE(has_repair(asset.rig_repairs, "2 root joints; joined under a new one"));
 }
 
 TEST(GltfLoad, a_mesh_without_skin_follows_the_joint_above_it) {
@@ -156,6 +156,16 @@ TEST(GltfLoad, a_mesh_without_skin_follows_the_joint_above_it) {
   ASSERT_EQ(asset.mesh.positions.size(), 8u);
   EXPECT_VEC3_NEAR(asset.mesh.positions[VertexId{4}], Vec3f(1.5f, 0, 0), 1e-6f);
   EXPECT_EQ((*asset.weights)[VertexId{4}][0], (Influence{JointId{1}, 1.0f}));
+}
+
+TEST(GltfLoad, a_mesh_that_is_bound_to_the_root_for_want_of_a_joint_is_named) {
+  gltf::Document document = skinned_tetrahedron_document();
+  document.json["meshes"].push_back(tetrahedron_document().json["meshes"][0]);
+  document.json["nodes"].push_back({{"name", "sword"}, {"mesh", 1}});
+  document.json["scenes"][0]["nodes"].push_back(3);
+  const Asset asset = load_document(document);
+  EXPECT_TRUE(has_repair(asset.rig_repairs, "mesh 'sword' is not skinned and under no joint; bound to the root"));
+  EXPECT_THAT(asset.repairs, testing::IsEmpty()) << "nothing to who replaces the rig";
 }
 
 TEST(GltfLoad, up_and_scale_overrule_the_file) {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What OBJ, PLY, STL, DAE and FBX hold arrives; what is broken in them is in bad_input_test.cpp.
 #include "files.h"
+#include "osteon/io/appearance.h"
+#include "osteon/io/assemble.h"
 #include "osteon/io/load.h"
 #include "osteon/io/rigtxt.h"
 #include "osteon/io/save.h"
+#include "osteon/io/scene_bytes.h"
 #include "osteon/io/source_document.h"
+#include "osteon/io/upright.h"
 #include "osteon/mesh/shapes.h"
 
 namespace osteon::io {
@@ -64,7 +68,7 @@ TEST(Obj, normals_coordinates_colours_and_materials_are_kept_for_the_glb) {
   EXPECT_EQ(appearance.colours[2], Eigen::Vector4f(0, 0, 1, 1));
   ASSERT_EQ(appearance.materials.size(), 2u);
   EXPECT_EQ(appearance.materials[0].colour, Eigen::Vector4f(1, 0, 0, 0.5f));
-  EXPECT_EQ(appearance.materials[0].texture, folder.path() / "tex/red.png");
+  EXPECT_EQ(appearance.materials[0].base.file, folder.path() / "tex/red.png");
   EXPECT_EQ(appearance.materials[1].name, "gone");
   EXPECT_EQ(appearance.face_materials, (std::vector<std::uint32_t>{0, 1}));
 }
@@ -86,6 +90,57 @@ TEST(Obj, a_seam_doubles_vertices_in_the_glb_and_both_get_the_weights) {
     const float expected = p.y() < 0.5f ? (p.x() < 0.5f ? 0.1f : 0.2f) : (p.x() > 0.5f ? 0.3f : 0.4f);
     EXPECT_NEAR((*back.weights)[v][1].weight, expected, 1e-6f);
   }
+}
+
+// Bound to one joint.
+std::vector<std::string> save_as_glb(const std::filesystem::path& path, const Asset& asset) {
+  Skeleton skeleton;
+  skeleton.add("root", std::nullopt, Vec3f(0, 0, 0));
+  SkinWeights weights;
+  const Influence whole{JointId{0}, 1.0f};
+  for (std::size_t v = 0; v < asset.mesh.positions.size(); ++v) weights.append({&whole, 1});
+  return save_glb(path, asset, skeleton, weights);
+}
+
+TEST(Obj, objects_come_out_under_their_names) {
+  const TemporaryFolder folder;
+  const Asset asset =
+      load(write(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\no body\nf 1 2 4\no h\xFCte\nf 2 3 4\no body\nf 1 4 3\n"));
+  EXPECT_EQ(asset.mesh.positions.size(), 4u) << "in the file's order, whatever the objects";
+  save_as_glb(folder / "a.glb", asset);
+  const auto json = read_document(folder / "a.glb").json;
+  ASSERT_EQ(json["meshes"].size(), 3u);
+  EXPECT_EQ(json["nodes"][0]["name"], "body");
+  EXPECT_EQ(json["nodes"][1]["name"], "h\xEF\xBF\xBDte") << "mended: it was not UTF-8";
+  EXPECT_EQ(json["nodes"][2]["name"], "a") << "faces before the first object go by the name of the file";
+  for (const auto& mesh : {0, 1, 2}) EXPECT_EQ(json["nodes"][mesh]["skin"], 0);
+  const Asset back = load(folder / "a.glb");
+  EXPECT_EQ(back.mesh.faces.size(), 4u);
+  EXPECT_EQ(back.weights->size(), 4u + 3u + 3u);
+}
+
+TEST(Obj, normal_maps_and_surface_factors_are_kept_and_other_textures_named) {
+  const TemporaryFolder folder;
+  const std::string png = "\x89PNG\r\n\x1a\n not really";
+  write(folder / "n.png", png);
+  write(folder / "mats.mtl", "newmtl steel\nPm 0.75\nPr 0.25\nnorm n.png\nmap_Ks s.png\nmap_bump h.png\nnewmtl gold\nmap_Ks t.png\n");
+  const Asset asset = load(write(
+      folder / "a.obj", "mtllib mats.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl steel\nf 1/1 2/1 3/1\nusemtl gold\nf 1/1 3/1 2/1\n"));
+  EXPECT_TRUE(has_repair(asset.repairs, "left out the map_Ks textures of 2 materials"));
+  EXPECT_TRUE(has_repair(asset.repairs, "left out the map_bump textures of 1 materials"));
+  save_as_glb(folder / "a.glb", asset);
+  const auto material = read_document(folder / "a.glb").json["materials"][0];
+  EXPECT_EQ(material["pbrMetallicRoughness"]["metallicFactor"], 0.75);
+  EXPECT_EQ(material["pbrMetallicRoughness"]["roughnessFactor"], 0.25);
+  EXPECT_EQ(material["normalTexture"]["index"], 0);
+}
+
+TEST(Obj, bump_maps_that_blender_writes_are_normal_maps) {
+  const TemporaryFolder folder;
+  write(folder / "mats.mtl", "# Blender MTL File: 'None'\nnewmtl skin\nmap_Bump -bm 1.0 n.png\n");
+  const Asset asset = load(write(folder / "a.obj", "mtllib mats.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl skin\nf 1 2 3\n"));
+  EXPECT_EQ(asset.source->appearance->materials[0].normals.file, folder.path() / "n.png");
+  EXPECT_THAT(asset.repairs, testing::IsEmpty());
 }
 
 TEST(Obj, what_save_obj_writes_comes_back_exactly) {
@@ -239,6 +294,127 @@ TEST(Collada, unit_axis_and_nodes) {
 TEST(Collada, up_overrules_the_file) {
   const auto box = bounds(load_text("a.dae", collada("<up_axis>Y_UP</up_axis>"), {.up = UpAxis::z, .scale = {}}).mesh);
   EXPECT_VEC3_NEAR(box.max(), Vec3f(1, 11, 0), 1e-5f);
+}
+
+TEST(Collada, what_is_left_out_is_named) {
+  std::string text = collada();
+  text.insert(text.find("<library_geometries>"),
+              "<library_cameras><camera id=\"c\"><optics><technique_common><perspective><xfov>40</xfov></perspective></technique_common>"
+              "</optics></camera></library_cameras>");
+  text.insert(text.find("</node>"), "<instance_camera url=\"#c\"/>");
+  EXPECT_TRUE(has_repair(load_text("a.dae", text).repairs, "left out 1 cameras"));
+}
+
+// Appearance ---------------------------------------------------------------------------------------------------------------------------
+
+// A triangle of one mesh on each of two nodes, the second moved by 5 along x.
+Scene two_triangles() {
+  Scene scene;
+  for (const char* name : {"head", "hat"}) {
+    Scene::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.faces = {{VertexId{0}, VertexId{1}, VertexId{2}}};
+    scene.nodes.push_back({name, std::nullopt, Eigen::Affine3d(Eigen::Translation3d(scene.nodes.empty() ? 0.0 : 5.0, 0, 0))});
+    scene.instances.push_back({scene.meshes.size(), scene.meshes.size(), std::nullopt});
+    scene.meshes.push_back(std::move(mesh));
+  }
+  return scene;
+}
+
+gltf::Json saved(Scene scene, const std::filesystem::path& path) {
+  Asset asset;
+  SourceDocument source;
+  source.instances = assemble(scene, {}, asset);
+  source.appearance = merged_appearance(scene, source.instances);
+  asset.source = std::make_shared<const SourceDocument>(std::move(source));
+  save_as_glb(path, asset);
+  return read_document(path).json;
+}
+
+TEST(Appearance, morphs_go_to_the_objects_that_they_move) {
+  const TemporaryFolder folder;
+  Scene scene = two_triangles();
+  scene.nodes[0].world.scale(2.0);
+  scene.meshes[0].morphs = {{"smile", {{0, 0, 0}, {0, 0, 0.5f}, {0, 0, 0}}}, {"blink", {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}}}};
+  scene.meshes[1].morphs = {{"blink", {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}};
+  const auto json = saved(scene, folder / "a.glb");
+  ASSERT_EQ(json["meshes"].size(), 2u);
+  EXPECT_EQ(json["meshes"][0]["name"], "head");
+  EXPECT_EQ(json["meshes"][0]["extras"]["targetNames"], gltf::Json({"smile", "blink"}));
+  EXPECT_EQ(json["meshes"][0]["weights"], gltf::Json({0.0, 0.0}));
+  const auto& targets = json["meshes"][0]["primitives"][0]["targets"];
+  ASSERT_EQ(targets.size(), 2u);
+  EXPECT_EQ(json["accessors"][targets[0]["POSITION"].get<std::size_t>()]["max"], gltf::Json({0.0, 0.0, 1.0}));
+  EXPECT_FALSE(json["meshes"][1].contains("extras"));
+  EXPECT_FALSE(json["meshes"][1]["primitives"][0].contains("targets"));
+}
+
+TEST(Appearance, all_sets_of_texture_coordinates_come_out) {
+  const TemporaryFolder folder;
+  Scene scene = two_triangles();
+  scene.meshes[0].texture_coordinates = {{{0, 0}, {1, 0}, {0, 1}}, {{0, 1, 2}}};
+  scene.meshes[0].coordinates_after = {{{0.5f, 0}, {0, 0.5f}, {0, 0}}};
+  scene.materials.resize(1);
+  scene.materials[0].normals.image = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  scene.materials[0].normals.coordinate_set = 1;
+  for (Scene::Mesh& mesh : scene.meshes) mesh.face_materials = {0};
+  const auto json = saved(scene, folder / "a.glb");
+  for (const auto& mesh : json["meshes"]) EXPECT_TRUE(mesh["primitives"][0]["attributes"].contains("TEXCOORD_1"));
+  EXPECT_EQ(json["materials"].size(), 1u) << "both meshes share it";
+  EXPECT_EQ(json["materials"][0]["normalTexture"]["texCoord"], 1);
+}
+
+TEST(Appearance, a_scene_comes_through_the_process_apart_as_it_was) {
+  Scene scene = two_triangles();
+  scene.meshes[0].morphs = {{"smile", {{0, 0, 0}, {0, 0, 0.5f}, {0, 0, 0}}}};
+  scene.meshes[0].coordinates_after = {{{0.5f, 0}, {0, 0.5f}, {0, 0}}};
+  scene.meshes[1].objects = {"hat"};
+  scene.materials.resize(1);
+  scene.materials[0].normals.coordinate_set = 1;
+  scene.materials[0].metallic = 0.5f;
+  std::vector<std::string> repairs;
+  Bytes bytes = to_bytes(scene, repairs);
+  Scene back = scene_of_bytes(bytes, repairs);
+  EXPECT_EQ(back.meshes[0].morphs[0].offsets, scene.meshes[0].morphs[0].offsets);
+  EXPECT_EQ(back.materials[0].metallic, 0.5f);
+  EXPECT_EQ(to_bytes(back, repairs), bytes);
+}
+
+TEST(Appearance, a_rig_that_is_replaced_is_told) {
+  const TemporaryFolder folder;
+  write(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Asset asset = load(write(folder / "a.txt", kRig));
+  EXPECT_TRUE(has_repair(save_as_glb(folder / "a.glb", asset), "replaced the rig that the asset had (2 joints)"));
+  EXPECT_THAT(save_weights(folder / "b.glb", asset, *asset.weights), testing::IsEmpty());
+}
+
+// Upright ------------------------------------------------------------------------------------------------------------------------------
+
+TEST(TurnUpright, is_what_asking_for_z_up_gives) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 0 2\nvn 0 -1 0\nf 1//1 2//1 3//1\n";
+  Asset turned = load_text("a.obj", text);
+  ASSERT_TRUE(turn_upright(turned));
+  const Asset asked = load_text("a.obj", text, {.up = UpAxis::z, .scale = {}});
+  EXPECT_EQ(turned.up, asked.up);
+  EXPECT_EQ(turned.mesh.positions, asked.mesh.positions);
+  EXPECT_EQ(turned.source->appearance->normals.values, asked.source->appearance->normals.values);
+  EXPECT_EQ(turned.source->appearance->normals.values.front(), Vec3f(0, 0, 1));
+}
+
+TEST(TurnUpright, turns_the_skeleton_too) {
+  const TemporaryFolder folder;
+  write(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 0 2\nf 1 2 3\n");
+  Asset asset = load(write(folder / "a.txt", "joints a 0 0 1\nroot a\nskin 0 a 1\nskin 1 a 1\nskin 2 a 1\n"));
+  ASSERT_TRUE(turn_upright(asset));
+  EXPECT_EQ(asset.skeleton->rest_positions[JointId{0}], Vec3f(0, 1, 0));
+}
+
+TEST(TurnUpright, leaves_a_glTF_as_it_is) {
+  const TemporaryFolder folder;
+  Asset asset = load(write_document(folder / "a.glb", tetrahedron_document()));
+  EXPECT_FALSE(turn_upright(asset));
+  EXPECT_EQ(asset.up, UpAxis::y);
+  EXPECT_EQ(asset.mesh.positions.raw(), kCorners);
 }
 
 }  // namespace

@@ -118,24 +118,53 @@ TEST_F(RigCommand, the_same_rig_for_any_order_of_vertices) {
   EXPECT_TRUE(weights_by_place(a) == weights_by_place(b));
 }
 
-TEST_F(RigCommand, a_character_that_stands_on_z_gets_the_same_rig_in_its_own_frame) {
-  TriangleMesh z_up = mesh_;
-  for (Vec3f& p : z_up.positions) p = Vec3f(p.x(), -p.z(), p.y());
-  io::save_obj(folder_ / "z.obj", z_up);
+TriangleMesh with_z_up(TriangleMesh mesh) {
+  for (Vec3f& p : mesh.positions) p = Vec3f(p.x(), -p.z(), p.y());
+  return mesh;
+}
+
+TEST_F(RigCommand, a_character_that_stands_on_z_comes_out_upright_with_the_same_rig) {
+  io::save_obj(folder_ / "z.obj", with_z_up(mesh_));
   ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb --report hero.json").code, 0);
-  ASSERT_EQ(osteon(folder_, "rig z.obj -o z.glb --report z.json").code, 0);
-  ASSERT_EQ(osteon(folder_, "rig z.obj -o turned.glb --up z").code, 0);
+  const auto run = osteon(folder_, "rig z.obj -o z.glb --report z.json");
+  ASSERT_EQ(run.code, 0);
+  EXPECT_THAT(run.err, HasSubstr("turned upright"));
+  ASSERT_EQ(osteon(folder_, "rig z.obj -o told.glb --up z --report told.json").code, 0);
   EXPECT_THAT(test::content(folder_ / "hero.json"), HasSubstr("\"up\": \"y\""));
   EXPECT_THAT(test::content(folder_ / "z.json"), HasSubstr("\"up\": \"z\""));
+  EXPECT_THAT(test::content(folder_ / "told.json"), HasSubstr("\"up\": \"z\""));
 
-  const io::Asset hero = io::load(folder_ / "hero.glb"), z = io::load(folder_ / "z.glb"), turned = io::load(folder_ / "turned.glb");
-  EXPECT_EQ(z.skeleton->names, hero.skeleton->names);
-  EXPECT_EQ(z.skeleton->parents, hero.skeleton->parents);
-  EXPECT_TRUE(*z.weights == *hero.weights);
+  for (const char* file : {"z.glb", "told.glb"}) {
+    const io::Asset hero = io::load(folder_ / "hero.glb"), z = io::load(folder_ / file);
+    EXPECT_EQ(z.mesh.positions, hero.mesh.positions) << file;
+    EXPECT_EQ(z.skeleton->names, hero.skeleton->names);
+    EXPECT_EQ(z.skeleton->parents, hero.skeleton->parents);
+    EXPECT_EQ(z.skeleton->rest_positions, hero.skeleton->rest_positions);
+    EXPECT_TRUE(*z.weights == *hero.weights);
+  }
+}
+
+TEST_F(RigCommand, a_glTF_that_stands_on_z_keeps_its_frame_unless_told_otherwise) {
+  io::Asset asset;
+  asset.mesh = with_z_up(mesh_);
+  Skeleton stick;
+  stick.add("stick", std::nullopt, {0, 0, 0.5f});
+  SkinWeights weights;
+  const Influence whole{JointId{0}, 1.0f};
+  for (std::size_t v = 0; v < asset.mesh.positions.size(); ++v) weights.append({&whole, 1});
+  io::save_glb(folder_ / "z.glb", asset, stick, weights);
+  ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb").code, 0);
+  const auto run = osteon(folder_, "rig z.glb -o kept.glb --report kept.json");
+  ASSERT_EQ(run.code, 0);
+  EXPECT_THAT(run.err, HasSubstr("a glTF keeps its frame"));
+  EXPECT_THAT(test::content(folder_ / "kept.json"), HasSubstr("\"up\": \"z\""));
+  ASSERT_EQ(osteon(folder_, "rig z.glb -o turned.glb --up z").code, 0);
+  const io::Asset hero = io::load(folder_ / "hero.glb"), kept = io::load(folder_ / "kept.glb"), turned = io::load(folder_ / "turned.glb");
+  EXPECT_EQ(kept.mesh.positions, asset.mesh.positions);
   for (const JointId j : hero.skeleton->names.ids()) {
     const Vec3f& p = hero.skeleton->rest_positions[j];
-    EXPECT_VEC3_NEAR(z.skeleton->rest_positions[j], Vec3f(p.x(), -p.z(), p.y()), 1e-5f);
-    EXPECT_VEC3_NEAR(turned.skeleton->rest_positions[j], p, 1e-5f);  // given the axis, the file itself is turned
+    EXPECT_VEC3_NEAR(kept.skeleton->rest_positions[j], Vec3f(p.x(), -p.z(), p.y()), 1e-5f);
+    EXPECT_VEC3_NEAR(turned.skeleton->rest_positions[j], p, 1e-5f);
   }
 }
 
@@ -143,10 +172,8 @@ TEST_F(RigCommand, a_fish_around_the_origin_is_told_upright_by_how_clearly_it_is
   TriangleMesh fish = synth::make_character(synth::Kind::Fish, 3, {82, synth::Finish::Smooth}).mesh;
   const Vec3f middle = bounds(fish).center();
   for (Vec3f& p : fish.positions) p -= middle;
-  TriangleMesh z_up = fish;
-  for (Vec3f& p : z_up.positions) p = Vec3f(p.x(), -p.z(), p.y());
   io::save_obj(folder_ / "y.obj", fish);
-  io::save_obj(folder_ / "z.obj", z_up);
+  io::save_obj(folder_ / "z.obj", with_z_up(fish));
   ASSERT_EQ(osteon(folder_, "rig y.obj -o y.glb --report y.json").code, 0);
   const auto run = osteon(folder_, "rig z.obj -o z.glb --report z.json");
   ASSERT_EQ(run.code, 0);
@@ -156,10 +183,8 @@ TEST_F(RigCommand, a_fish_around_the_origin_is_told_upright_by_how_clearly_it_is
   const io::Asset y = io::load(folder_ / "y.glb"), z = io::load(folder_ / "z.glb");
   EXPECT_EQ(z.skeleton->names, y.skeleton->names);
   EXPECT_TRUE(*z.weights == *y.weights);
-  for (const JointId j : y.skeleton->names.ids()) {
-    const Vec3f& p = y.skeleton->rest_positions[j];
-    EXPECT_VEC3_NEAR(z.skeleton->rest_positions[j], Vec3f(p.x(), -p.z(), p.y()), 1e-5f);
-  }
+  EXPECT_EQ(z.mesh.positions, y.mesh.positions);
+  for (const JointId j : y.skeleton->names.ids()) EXPECT_VEC3_NEAR(z.skeleton->rest_positions[j], y.skeleton->rest_positions[j], 1e-5f);
 }
 
 TEST_F(RigCommand, a_given_skeleton_is_kept) {
@@ -221,6 +246,16 @@ TEST_F(RigCommand, below_the_wanted_confidence_nothing_is_written_and_the_code_i
   EXPECT_THAT(run.err, HasSubstr("the confidence in this rig is"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "hero.glb"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "hero.json"));
+}
+
+TEST_F(RigCommand, a_mesh_that_cannot_be_rigged_is_named) {
+  std::ofstream(folder_ / "bad.obj") << "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n";
+  for (const char* command : {"rig bad.obj", "skin bad.obj --skeleton hero.glb"}) {
+    if (command[0] == 's') ASSERT_EQ(osteon(folder_, "rig hero.obj -o hero.glb").code, 0);
+    const auto run = osteon(folder_, std::string(command) + " -o out.glb");
+    EXPECT_EQ(run.code, 2);
+    EXPECT_THAT(run.err, HasSubstr("error: bad.obj: the mesh has ")) << command;
+  }
 }
 
 }  // namespace

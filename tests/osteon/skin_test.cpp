@@ -149,6 +149,20 @@ TEST_F(SkinCommand, a_skeleton_in_centimetres_is_brought_to_the_body_by_one_node
   for (JointId j : rig_.skeleton.names.ids()) EXPECT_VEC3_NEAR(out.skeleton->rest_positions[j], rig_.skeleton.rest_positions[j], 1e-4f);
 }
 
+TEST_F(SkinCommand, a_bare_mesh_that_stands_on_z_is_turned_upright_to_the_skeleton) {
+  TriangleMesh z_up = rig_.mesh;
+  for (Vec3f& p : z_up.positions) p = Vec3f(p.x(), -p.z(), p.y());
+  io::save_obj(folder_ / "z.obj", z_up);
+  const auto run = osteon(folder_, "skin z.obj --skeleton hero.glb -o z.glb");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("turned upright"));
+  ASSERT_EQ(osteon(folder_, "skin body.obj --skeleton hero.glb -o out.glb").code, 0);
+  const io::Asset z = io::load(folder_ / "z.glb"), out = io::load(folder_ / "out.glb");
+  EXPECT_EQ(z.mesh.positions, out.mesh.positions);
+  EXPECT_EQ(z.skeleton->rest_positions, out.skeleton->rest_positions);
+  EXPECT_TRUE(*z.weights == *out.weights);
+}
+
 TEST_F(SkinCommand, binds_by_neuroskinning_the_same_with_one_and_two_threads) {
   const auto run = osteon(folder_, "skin body.obj --skeleton hero.glb --method neuroskinning -o one.glb --report one.json --threads 1");
   ASSERT_EQ(run.code, 0) << run.err;
@@ -170,7 +184,7 @@ TEST_F(SkinCommand, every_method_weighs_every_vertex) {
     const auto run = osteon(folder_, fmt::format("skin body.obj --skeleton hero.glb -o out.glb --method {}", method));
     ASSERT_EQ(run.code, 0) << run.err;
     const io::Asset out = io::load(folder_ / "out.glb");
-    EXPECT_THAT(out.repairs, testing::Each(testing::Not(HasSubstr("no weight")))) << method;
+    EXPECT_THAT(out.rig_repairs, testing::Each(testing::Not(HasSubstr("no weight")))) << method;
   }
 }
 

@@ -130,7 +130,7 @@ TEST(RigCharacter, a_turned_mesh_gets_the_same_rig_turned) {
     EXPECT_EQ(result.skeleton.names, straight.skeleton.names);
     EXPECT_EQ(result.skeleton.parents, straight.skeleton.parents);
     EXPECT_EQ(result.weights, straight.weights);
-    EXPECT_EQ(result.report.is_z_up, turn * y == z);
+    EXPECT_EQ(result.report.up == 'z', turn * y == z);
     for (JointId j : result.skeleton.names.ids()) {
       EXPECT_EQ(result.skeleton.rest_positions[j], turn * straight.skeleton.rest_positions[j]);
       const Quatf expected = Quatf(turn) * straight.skeleton.rest_orientations[j];

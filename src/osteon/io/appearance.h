@@ -5,7 +5,8 @@
 
 namespace osteon::io {
 
-// Normals, texture coordinates, colours and materials of all instances, in the order in which assemble() merged their vertices and faces.
+// Normals, texture coordinates, colours, materials, objects and morphs of all instances, in the order in which assemble() merged their
+// vertices and faces.
 Appearance merged_appearance(const Scene& scene, const std::vector<PlacedInstance>& instances);
 
 }  // namespace osteon::io

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/io/assemble.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "osteon/base/error.h"
 #include "osteon/io/joint_tree.h"
+#include "osteon/io/upright.h"
 
 namespace osteon::io {
 namespace {
@@ -40,12 +43,14 @@ class Assembler {
   Assembler(const Scene& scene, Asset& asset) : scene_(scene), asset_(asset) {}
 
   std::vector<PlacedInstance> run() {
-    if (const auto joints = joint_tree(scene_, asset_.repairs)) tree_ = *joints;
+    if (const auto joints = joint_tree(scene_, asset_.rig_repairs)) tree_ = *joints;
     skinned_ = std::any_of(scene_.instances.begin(), scene_.instances.end(), [](const Scene::Instance& i) { return i.skin.has_value(); });
     std::vector<PlacedInstance> placed;
     for (const Scene::Instance& instance : scene_.instances) placed.push_back(place(instance));
     if (asset_.mesh.positions.empty()) throw Error("no vertices");
-    if (asset_.mesh.faces.empty()) throw Error("{} vertices, but no faces", asset_.mesh.positions.size());
+    if (asset_.mesh.faces.empty())
+      throw Error("{} vertices, but no faces{}{}", asset_.mesh.positions.size(), asset_.repairs.empty() ? "" : ": ",
+                  fmt::join(asset_.repairs, "; "));
     report();
     if (!tree_.skeleton.names.empty()) {
       if (skinned_) asset_.weights = std::move(weights_);
@@ -62,7 +67,7 @@ class Assembler {
       throw Error("more than {} vertices or {} faces in all", kMostVertices, 2 * kMostVertices);
     const bool follows_skin = instance.skin && !mesh.influence_offsets.empty();
     if (instance.skin && !follows_skin)
-      asset_.repairs.push_back(fmt::format("mesh {} has a skin but no weights; placed by its node", instance.mesh));
+      asset_.repairs.push_back(fmt::format("mesh {} has a skin but no weights; placed by its node", name_of(instance)));
     if (follows_skin)
       place_skinned(instance, mesh, placed);
     else
@@ -72,13 +77,19 @@ class Assembler {
     return placed;
   }
 
+  // As artists know it, or by number.
+  std::string name_of(const Scene::Instance& instance) const {
+    const std::string& name = scene_.nodes[instance.node].name;
+    return name.empty() ? std::to_string(instance.mesh) : fmt::format("'{}'", name);
+  }
+
   void place_rigid(const Scene::Instance& instance, const Scene::Mesh& mesh, PlacedInstance& placed) {
     placed.to_world = scene_.nodes[instance.node].world;
     append_positions(mesh, *placed.to_world);
     if (!skinned_) return;
     const auto follows = nearest_joint(instance.node);
     if (!follows && !mesh.positions.empty())
-      asset_.repairs.push_back(fmt::format("mesh {} is not skinned and under no joint; bound to the root", instance.mesh));
+      asset_.rig_repairs.push_back(fmt::format("mesh {} is not skinned and under no joint; bound to the root", name_of(instance)));
     const Influence whole{follows.value_or(JointId{0}), 1.0f};
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) weights_.append({&whole, 1});
   }
@@ -149,12 +160,12 @@ class Assembler {
   }
 
   void report() {
-    const auto tell = [&](std::size_t count, std::string_view what) {
-      if (count > 0) asset_.repairs.push_back(fmt::format("{} {}", count, what));
+    const auto tell = [](std::vector<std::string>& repairs, std::size_t count, std::string_view what) {
+      if (count > 0) repairs.push_back(fmt::format("{} {}", count, what));
     };
-    tell(misplaced_, "vertices are not finite in world space; moved to the origin");
-    tell(unknown_joints_, "weights name joints that their skin does not have; dropped");
-    tell(weightless_, "vertices of skinned meshes have no weight; bound to the root");
+    tell(asset_.repairs, misplaced_, "vertices are not finite in world space; moved to the origin");
+    tell(asset_.rig_repairs, unknown_joints_, "weights name joints that their skin does not have; dropped");
+    tell(asset_.rig_repairs, weightless_, "vertices of skinned meshes have no weight; bound to the root");
   }
 
   const Scene& scene_;
@@ -169,16 +180,7 @@ class Assembler {
 
 Eigen::Affine3d import_transform(const Scene& scene, const LoadOptions& options) {
   Eigen::Affine3d transform(Eigen::Scaling(options.scale ? static_cast<double>(*options.scale) : scene.metres_per_unit));
-  switch (options.up.value_or(scene.up)) {
-    case UpAxis::x:
-      transform.rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
-      break;
-    case UpAxis::y:
-      break;
-    case UpAxis::z:
-      transform.rotate(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
-      break;
-  }
+  transform.rotate(turn_to_y_up(options.up.value_or(scene.up)).cast<double>());
   return transform;
 }
 
@@ -208,6 +210,7 @@ Eigen::Affine3d blended_transform(const Scene::Mesh& mesh, std::size_t vertex, s
 
 std::vector<PlacedInstance> assemble(Scene& scene, const LoadOptions& options, Asset& asset) {
   to_our_world(scene, options);
+  asset.up = options.up.value_or(scene.up);
   return Assembler(scene, asset).run();
 }
 

@@ -9,9 +9,9 @@
 namespace osteon::io {
 
 // Makes the strict Asset of a tolerant Scene: instances merged in world space, metres, y up; joints of all skins as one tree with unique
-// names; weights normalised. Meshes without a skin follow the nearest joint above them. What had to be repaired is added to asset.repairs.
-// Returns where each instance went. Throws Error (its text without the file's name) if there is no face, or far too many of them.
-// On return the nodes' transforms in `scene` lead to our world.
+// names; weights normalised. Meshes without a skin follow the nearest joint above them. What had to be repaired is added to asset.repairs
+// and rig_repairs. Returns where each instance went. Throws Error (its text without the file's name) if there is no face, or far too many
+// of them. On return the nodes' transforms in `scene` lead to our world.
 std::vector<PlacedInstance> assemble(Scene& scene, const LoadOptions& options, Asset& asset);
 
 // File's world -> ours: metres, y up.

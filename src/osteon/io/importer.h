@@ -24,7 +24,7 @@ struct File {
 // A scene of one node that shows one mesh.
 inline Scene scene_of(Scene::Mesh mesh, std::vector<Scene::Material> materials = {}) {
   Scene scene;
-  scene.nodes.push_back({"mesh", std::nullopt, Eigen::Affine3d::Identity()});
+  scene.nodes.push_back({"", std::nullopt, Eigen::Affine3d::Identity()});
   scene.meshes.push_back(std::move(mesh));
   scene.materials = std::move(materials);
   scene.instances.push_back({0, 0, std::nullopt});

@@ -15,17 +15,19 @@ namespace osteon::io {
 
 struct SourceDocument;  // what save_glb needs to give the asset back as it came; see source_document.h
 
+enum class UpAxis { x, y, z };
+
 // A file that came in: one mesh, one skeleton at most. Satisfies validate(mesh), validate(*skeleton), validate(*weights, ...).
 struct Asset {
   std::filesystem::path path;
-  TriangleMesh mesh;                   // all meshes of the scene merged; world space, metres, y up; vertices in the file's order
-  std::optional<Skeleton> skeleton;    // joints of all skins, one root, in the rest pose that `mesh` stands in
-  std::optional<SkinWeights> weights;  // one row per vertex; present exactly when `skeleton` is and something is skinned to it
-  std::vector<std::string> repairs;    // what was wrong with the file and what was done about it
+  TriangleMesh mesh;                     // all meshes of the scene merged; world space, metres, y up; vertices in the file's order
+  std::optional<Skeleton> skeleton;      // joints of all skins, one root, in the rest pose that `mesh` stands in
+  std::optional<SkinWeights> weights;    // one row per vertex; present exactly when `skeleton` is and something is skinned to it
+  UpAxis up = UpAxis::y;                 // the axis of the file that was taken for its up axis, and so was turned to y
+  std::vector<std::string> repairs;      // what was wrong with the file and what was done about it, and what of it is left out
+  std::vector<std::string> rig_repairs;  // the same of the rig that it has: nothing to those who give it another
   std::shared_ptr<const SourceDocument> source;
 };
-
-enum class UpAxis { x, y, z };
 
 struct LoadOptions {
   std::optional<UpAxis> up;    // the axis of the file that points up; by default what the file says, or else y

@@ -27,14 +27,30 @@ std::vector<std::string> save_document(const std::filesystem::path& path, const 
     const bool from_gltf = asset.source && asset.source->gltf;
     const Appearance appearance = asset.source && asset.source->appearance ? *asset.source->appearance : Appearance{};
     const std::string name = asset.path.empty() ? "character" : asset.path.stem().string();
-    GltfSource document = from_gltf ? *asset.source->gltf : gltf::fresh_document(name, asset.mesh, appearance, changes);
-    attach(document, from_gltf ? asset.source->instances : gltf::fresh_instances(), changes);
+    gltf::Fresh document =
+        from_gltf ? gltf::Fresh{*asset.source->gltf, asset.source->instances} : gltf::fresh_document(name, asset.mesh, appearance, changes);
+    attach(document.source, document.instances, changes);
     if (joints > 254) changes.push_back(fmt::format("{} joints; viewers on Android show at most 254", joints));
-    gltf::write_glb(path, document.document);
+    gltf::write_glb(path, document.source.document);
   } catch (const gltf::Json::exception& e) {  // parts of the document that reading the mesh had no need to look at
     throw Error("{}: malformed glTF: {}", asset.path.filename().string(), e.what());
   }
   return changes;
+}
+
+// A glTF's own rig is replaced, and said so, by attach_rig.
+void tell_what_is_replaced(const Asset& asset, std::vector<std::string>& changes) {
+  const bool from_gltf = asset.source && asset.source->gltf;
+  if (asset.skeleton && !from_gltf)
+    changes.push_back(fmt::format("replaced the rig that the asset had ({} joints)", asset.skeleton->size()));
+}
+
+std::vector<std::string> save_with_joints(const std::filesystem::path& path, const Asset& asset, const Skeleton& skeleton,
+                                          const SkinWeights& weights, const SaveOptions& options) {
+  check(asset, skeleton, weights, options);
+  return save_document(path, asset, skeleton.size(), [&](GltfSource& document, const auto& instances, auto& changes) {
+    gltf::attach_rig(document, instances, asset.mesh, skeleton, weights, options, changes);
+  });
 }
 
 void append_number(std::string& text, float value) {
@@ -48,10 +64,9 @@ void append_number(std::string& text, float value) {
 
 std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const Skeleton& skeleton,
                                   const SkinWeights& weights, const SaveOptions& options) {
-  check(asset, skeleton, weights, options);
-  return save_document(path, asset, skeleton.size(), [&](GltfSource& document, const auto& instances, auto& changes) {
-    gltf::attach_rig(document, instances, asset.mesh, skeleton, weights, options, changes);
-  });
+  std::vector<std::string> changes = save_with_joints(path, asset, skeleton, weights, options);
+  tell_what_is_replaced(asset, changes);
+  return changes;
 }
 
 std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const SkeletonFile& skeleton,
@@ -62,6 +77,7 @@ std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset
   }
   check(asset, skeleton.skeleton, weights, options);
   return save_document(path, asset, skeleton.skeleton.size(), [&](GltfSource& document, const auto& instances, auto& changes) {
+    tell_what_is_replaced(asset, changes);
     gltf::attach_rig(document, instances, asset.mesh, skeleton, fit, weights, options, changes);
   });
 }
@@ -74,7 +90,7 @@ std::vector<std::string> save_weights(const std::filesystem::path& path, const A
   if (!from_gltf || !gltf::can_replace_weights(asset.source->instances)) {
     SaveOptions as_given = options;
     as_given.names = JointNames::as_given;
-    std::vector<std::string> changes = save_glb(path, asset, *asset.skeleton, weights, as_given);
+    std::vector<std::string> changes = save_with_joints(path, asset, *asset.skeleton, weights, as_given);
     if (from_gltf)
       changes.insert(changes.begin(), "a joint is scaled to nothing, which no mesh can be bound to; the skeleton is written anew");
     return changes;

@@ -34,7 +34,8 @@ struct SaveOptions {
 // Writes `asset` with the given skeleton and weights (one row per vertex of asset.mesh) as a GLB.
 // An asset that came from glTF goes out with its materials, textures, names, extras, extensions and vertex data as they were; the rig
 // that it had, and its animations, are replaced; what hung from its joints (sockets, cameras, props) hangs from the nearest new ones, with
-// the animations of its own. Any other asset becomes a new GLB with its normals, texture coordinates and colours.
+// the animations of its own. Any other asset becomes a new GLB with its objects, normals, texture coordinates, colours, materials and
+// morph targets.
 // Returns what had to be changed in the asset to make that possible. The file is written aside and renamed.
 // Throws Error if the file cannot be written or the rig breaks an invariant.
 std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const Skeleton& skeleton,

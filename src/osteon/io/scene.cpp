@@ -3,6 +3,13 @@
 
 namespace osteon::io {
 
+Scene::Material Scene::Material::plain(std::string name) {
+  Material material;
+  material.name = std::move(name);
+  material.colour = {0.8f, 0.8f, 0.8f, 1.0f};
+  return material;
+}
+
 std::size_t repair_positions(std::span<Vec3f> positions) {
   std::size_t repaired = 0;
   for (Vec3f& p : positions) {

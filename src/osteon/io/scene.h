@@ -25,11 +25,20 @@ struct Scene {
     std::uint32_t joint;  // index into Skin::joints
     float weight;
   };
+  struct Texture {
+    std::filesystem::path file;        // may not exist; empty if there is none
+    std::vector<std::uint8_t> image;   // the picture itself where the file holds it
+    std::uint32_t coordinate_set = 0;  // the texture coordinates that it is laid out by
+
+    bool is_there() const { return !file.empty() || !image.empty(); }
+  };
   struct Material {
     std::string name;
     Eigen::Vector4f colour = Eigen::Vector4f::Ones();  // linear, with opacity
-    std::filesystem::path texture;                     // may not exist; empty if there is none
-    std::vector<std::uint8_t> image;                   // the texture itself where the file holds it
+    float metallic = 0.0f, roughness = 1.0f;           // as colours are meant in formats that do not speak of it
+    Texture base, normals;                             // colours; normals in tangent space
+
+    static Material plain(std::string name = "surface");  // for faces without a material
   };
   // Values at the corners of faces, several of which may share one. Empty if the file has none.
   template <class T>
@@ -37,13 +46,22 @@ struct Scene {
     std::vector<T> values;
     std::vector<std::array<std::uint32_t, 3>> corners;  // for each face, indices into values
   };
+  // A shape that the mesh can take beside its own.
+  struct Morph {
+    std::string name;
+    std::vector<Vec3f> offsets;  // one for each position
+  };
   struct Mesh {
     std::vector<Vec3f> positions;
     std::vector<Triangle> faces;
     Layer<Vec3f> normals;
-    Layer<Eigen::Vector2f> texture_coordinates;    // origin at the top left, as in glTF
-    std::vector<Eigen::Vector4f> colours;          // linear; one for each position, or none
+    Layer<Eigen::Vector2f> texture_coordinates;                   // origin at the top left, as in glTF
+    std::vector<std::vector<Eigen::Vector2f>> coordinates_after;  // further sets of them, each with one for each position
+    std::vector<Eigen::Vector4f> colours;                         // linear; one for each position, or none
+    std::vector<Morph> morphs;
     std::vector<std::uint32_t> face_materials;     // one for each face, or none
+    std::vector<std::string> objects;              // names of the objects that it consists of; none: what the node is called
+    std::vector<std::uint32_t> face_objects;       // one for each face, or none
     std::vector<std::uint32_t> influence_offsets;  // size positions + 1, or empty when nothing is skinned
     std::vector<Influence> influences;
   };

@@ -82,7 +82,11 @@ void pass(Archive& archive, std::optional<std::size_t>& value) {
 template <class Archive>
 void pass(Archive& archive, Scene::Node& node);
 template <class Archive>
+void pass(Archive& archive, Scene::Texture& texture);
+template <class Archive>
 void pass(Archive& archive, Scene::Material& material);
+template <class Archive>
+void pass(Archive& archive, Scene::Morph& morph);
 template <class Archive>
 void pass(Archive& archive, Scene::Mesh& mesh);
 template <class Archive>
@@ -115,13 +119,21 @@ void pass(Archive& archive, Scene::Node& node) {
   pass_all(archive, node.name, node.parent, node.world);
 }
 template <class Archive>
+void pass(Archive& archive, Scene::Texture& texture) {
+  pass_all(archive, texture.file, texture.image, texture.coordinate_set);
+}
+template <class Archive>
 void pass(Archive& archive, Scene::Material& material) {
-  pass_all(archive, material.name, material.colour, material.texture, material.image);
+  pass_all(archive, material.name, material.colour, material.metallic, material.roughness, material.base, material.normals);
+}
+template <class Archive>
+void pass(Archive& archive, Scene::Morph& morph) {
+  pass_all(archive, morph.name, morph.offsets);
 }
 template <class Archive>
 void pass(Archive& archive, Scene::Mesh& mesh) {
-  pass_all(archive, mesh.positions, mesh.faces, mesh.normals, mesh.texture_coordinates, mesh.colours, mesh.face_materials,
-           mesh.influence_offsets, mesh.influences);
+  pass_all(archive, mesh.positions, mesh.faces, mesh.normals, mesh.texture_coordinates, mesh.coordinates_after, mesh.colours, mesh.morphs,
+           mesh.face_materials, mesh.objects, mesh.face_objects, mesh.influence_offsets, mesh.influences);
 }
 template <class Archive>
 void pass(Archive& archive, Scene::Skin& skin) {

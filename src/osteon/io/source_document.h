@@ -35,11 +35,20 @@ struct GltfSource {
 
 // What else is known of an Asset::mesh that did not come from glTF; its layers are empty where the file had nothing.
 struct Appearance {
+  struct Morph {
+    std::string name;
+    std::vector<VertexId> vertices;  // those that it moves
+    std::vector<Vec3f> offsets;      // by how much, world space
+  };
   std::vector<Scene::Material> materials;
   std::vector<std::uint32_t> face_materials;  // one for each face
   Scene::Layer<Vec3f> normals;                // world space, of unit length, or zero where the file has none
   Scene::Layer<Eigen::Vector2f> texture_coordinates;
-  std::vector<Eigen::Vector4f> colours;  // one for each vertex
+  std::vector<PerVertex<Eigen::Vector2f>> coordinates_after;  // further sets of texture coordinates
+  std::vector<Eigen::Vector4f> colours;                       // one for each vertex
+  std::vector<Morph> morphs;                                  // of different names
+  std::vector<std::string> objects;                           // names; may be empty or not unique
+  std::vector<std::uint32_t> face_objects;                    // one for each face
 };
 
 // Where a mesh of the scene went in Asset::mesh, and how its vertices came to world space.

@@ -23,7 +23,8 @@ std::vector<std::filesystem::path> texture_files(const Asset& asset) {
   if (!asset.source) return files;
   if (const auto& appearance = asset.source->appearance)
     for (const Scene::Material& material : appearance->materials)
-      if (material.image.empty()) files.push_back(material.texture);
+      for (const Scene::Texture* texture : {&material.base, &material.normals})
+        if (texture->image.empty()) files.push_back(texture->file);
   if (const auto& gltf = asset.source->gltf)
     for (const std::string& uri : image_uris(gltf->document.json))
       files.push_back(gltf->document.path.parent_path() / gltf::decode_percent(uri));

@@ -19,7 +19,7 @@ struct StageTime {
 // How far a rig can be trusted, and how it came about. Lengths: longest side of the character = 1.
 struct RigReport {
   std::size_t vertices = 0, working_vertices = 0, joints = 0;
-  bool is_z_up = false;  // z was taken for the up axis, else y
+  char up = 'y';  // the axis of the mesh that was taken for its up axis, y or z
   // 0..1: the share of the joints that can be expected to be right, 0 where none was found: `character` times the mean of
   // `joint_confidence` (pipelines/confidence.h). Where the skeleton is given: the coverage.
   float confidence = 0.0f;

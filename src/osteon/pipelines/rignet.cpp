@@ -535,8 +535,8 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   report.vertices = mesh.positions.size();
   report.working_vertices = body.positions().size();
   report.repairs = body.working.clean.repairs;
-  report.is_z_up = body.frame.is_z_up;
-  if (report.is_z_up && geometry::stance(mesh) == geometry::Stance::on_z)
+  report.up = body.frame.is_z_up ? 'z' : 'y';
+  if (body.frame.is_z_up && geometry::stance(mesh) == geometry::Stance::on_z)
     report.warnings.push_back("the character stands on the plane z = 0: z was taken for its up axis");
   result.skeleton = options.skeleton ? *options.skeleton : turned(skeleton, body.frame.turn.transpose());
   const std::vector<Bone> list = normalised_bones(skeleton, body.working.normalization);

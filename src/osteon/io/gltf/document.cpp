@@ -196,7 +196,8 @@ Bytes fetch(const Document& document, const std::string& uri, const std::string&
 
 void write_glb(const std::filesystem::path& path, const Document& document) {
   assert(document.buffers.size() <= 1);
-  std::string json = document.json.dump();
+  // Names of other formats may not be UTF-8.
+  std::string json = document.json.dump(-1, ' ', false, Json::error_handler_t::replace);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   Bytes bin = document.buffers.empty() ? Bytes{} : document.buffers[0];
   bin.resize((bin.size() + 3) / 4 * 4);

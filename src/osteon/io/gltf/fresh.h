@@ -5,13 +5,15 @@
 
 namespace osteon::io::gltf {
 
-// A new document with one node and one mesh: a primitive for each material, vertices doubled where corners differ in normal or texture
-// coordinate, smooth normals where the input had none. Faces that name a vertex twice are left out.
-// `name` is given to the mesh and its node. Pre: the mesh is valid and has a face.
-GltfSource fresh_document(const std::string& name, const TriangleMesh& mesh, const Appearance& appearance,
-                          std::vector<std::string>& changes);
+// A new document, and how the mesh stands in it.
+struct Fresh {
+  GltfSource source;
+  std::vector<PlacedInstance> instances;  // one for each of its meshes
+};
 
-// The one instance of a fresh document.
-std::vector<PlacedInstance> fresh_instances();
+// A node and a mesh for each object, with a primitive for each material; vertices doubled where corners differ in normal or texture
+// coordinate, smooth normals where the input had none. Faces that name a vertex twice are left out.
+// `name` is given to the objects that have none. Pre: the mesh is valid and has a face.
+Fresh fresh_document(const std::string& name, const TriangleMesh& mesh, const Appearance& appearance, std::vector<std::string>& changes);
 
 }  // namespace osteon::io::gltf

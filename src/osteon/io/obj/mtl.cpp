@@ -19,6 +19,19 @@ std::filesystem::path texture_path(const std::filesystem::path& folder, TextScan
 
 float between_0_and_1(float value, float otherwise) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : otherwise; }
 
+// What a bump map holds: heights, says the format; normals, where Blender wrote it.
+enum class Bumps { heights, normals };
+
+bool is_bump(std::string_view keyword) { return keyword == "bump" || keyword == "map_Bump" || keyword == "map_bump"; }
+
+bool holds_normals(std::string_view keyword, Bumps bumps) {
+  return keyword == "norm" || keyword == "map_Kn" || (bumps == Bumps::normals && is_bump(keyword));
+}
+
+bool is_texture(std::string_view keyword) {
+  return keyword.starts_with("map_") || is_bump(keyword) || keyword == "disp" || keyword == "decal" || keyword == "refl";
+}
+
 }  // namespace
 
 void read_mtl(const std::filesystem::path& folder, const std::string& name, std::map<std::string, Scene::Material>& materials,
@@ -32,6 +45,8 @@ void read_mtl(const std::filesystem::path& folder, const std::string& name, std:
     repairs.push_back(fmt::format("materials left out: {}", e.what()));
     return;
   }
+  const Bumps bumps = text_of(bytes).starts_with("# Blender") ? Bumps::normals : Bumps::heights;
+  std::map<std::string, std::size_t> left_out;
   Scene::Material* current = nullptr;
   for (TextScanner scan(text_of(bytes)); !scan.at_end(); scan.next_line()) {
     const std::string_view keyword = scan.word();
@@ -47,10 +62,19 @@ void read_mtl(const std::filesystem::path& folder, const std::string& name, std:
       current->colour[3] = between_0_and_1(scan.number(), 1.0f);
     } else if (keyword == "Tr") {
       current->colour[3] = 1.0f - between_0_and_1(scan.number(), 0.0f);
+    } else if (keyword == "Pm") {
+      current->metallic = between_0_and_1(scan.number(), 0.0f);
+    } else if (keyword == "Pr") {
+      current->roughness = between_0_and_1(scan.number(), 1.0f);
     } else if (keyword == "map_Kd") {
-      current->texture = texture_path(folder, scan);
+      current->base.file = texture_path(folder, scan);
+    } else if (holds_normals(keyword, bumps)) {
+      current->normals.file = texture_path(folder, scan);
+    } else if (is_texture(keyword)) {
+      ++left_out[std::string(keyword)];
     }
   }
+  for (const auto& [keyword, count] : left_out) repairs.push_back(fmt::format("left out the {} textures of {} materials", keyword, count));
 }
 
 }  // namespace osteon::io::obj

@@ -25,11 +25,25 @@ struct Content {
   std::vector<Eigen::Vector2f> coordinates;
   std::vector<Eigen::Vector4f> colours;
   std::vector<Corner> corners;
-  std::vector<std::size_t> polygon_ends;  // in corners
-  std::vector<std::uint32_t> polygon_materials;
-  std::vector<std::string> material_names;
+  std::vector<std::size_t> polygon_ends;   // in corners
+  std::vector<std::size_t> polygon_lines;  // of the file
+  std::vector<std::uint32_t> polygon_materials, polygon_objects;
+  std::vector<std::string> material_names, object_names;
   std::vector<std::string> libraries;
-  std::size_t unreadable_faces = 0;
+  std::vector<std::size_t> unreadable_lines;  // of faces
+};
+
+// Numbers names in the order in which they come.
+class Names {
+ public:
+  std::uint32_t number(std::string name, std::vector<std::string>& all) {
+    const auto [entry, is_new] = numbers_.emplace(std::move(name), static_cast<std::uint32_t>(all.size()));
+    if (is_new) all.push_back(entry->first);
+    return entry->second;
+  }
+
+ private:
+  std::map<std::string, std::uint32_t> numbers_;
 };
 
 class Parser {
@@ -52,7 +66,9 @@ class Parser {
     else if (keyword == "f" || keyword == "fo")
       face();
     else if (keyword == "usemtl")
-      use_material(std::string(scan_.rest()));
+      material_ = materials_.number(std::string(scan_.rest()), content_.material_names);
+    else if (keyword == "o")
+      object_ = objects_.number(std::string(scan_.rest()), content_.object_names);
     else if (keyword == "mtllib")
       content_.libraries.emplace_back(scan_.rest());
   }
@@ -80,17 +96,19 @@ class Parser {
   }
 
   void face() {
-    const std::size_t before = content_.corners.size();
+    const std::size_t before = content_.corners.size(), line = scan_.line();
     bool readable = true;
     for (std::string_view word = scan_.word(); !word.empty() && word[0] != '#'; word = scan_.word()) readable = corner(word) && readable;
     const std::size_t count = content_.corners.size() - before;
     if (!readable || count < 3) {
       content_.corners.resize(before);
-      ++content_.unreadable_faces;
+      content_.unreadable_lines.push_back(line);
       return;
     }
     content_.polygon_ends.push_back(content_.corners.size());
+    content_.polygon_lines.push_back(line);
     content_.polygon_materials.push_back(material_);
+    content_.polygon_objects.push_back(object_);
   }
 
   // v, v/vt, v//vn or v/vt/vn
@@ -118,16 +136,10 @@ class Parser {
     return index >= 0;
   }
 
-  void use_material(std::string name) {
-    const auto [entry, is_new] = material_numbers_.emplace(std::move(name), static_cast<std::uint32_t>(content_.material_names.size()));
-    if (is_new) content_.material_names.push_back(entry->first);
-    material_ = entry->second;
-  }
-
   TextScanner scan_;
   Content content_;
-  std::map<std::string, std::uint32_t> material_numbers_;
-  std::uint32_t material_ = UINT32_MAX;  // none yet
+  Names materials_, objects_;
+  std::uint32_t material_ = UINT32_MAX, object_ = UINT32_MAX;  // none yet
 };
 
 // Turns the polygons into the triangles and layers of a mesh.
@@ -141,8 +153,8 @@ class MeshBuilder {
     mesh_.faces.reserve(content_.corners.size() - 2 * content_.polygon_ends.size());
     std::size_t begin = 0;
     for (std::size_t p = 0; p < content_.polygon_ends.size(); ++p) {
-      add_polygon(std::span<const Corner>(content_.corners).subspan(begin, content_.polygon_ends[p] - begin),
-                  content_.polygon_materials[p]);
+      const auto corners = std::span<const Corner>(content_.corners).subspan(begin, content_.polygon_ends[p] - begin);
+      if (is_in_range(corners, content_.polygon_lines[p])) add_polygon(corners, p);
       begin = content_.polygon_ends[p];
     }
     complete(mesh_.normals, Vec3f(Vec3f::Zero()));  // zero: a normal to be computed
@@ -150,28 +162,38 @@ class MeshBuilder {
     mesh_.positions = std::move(content_.positions);
     if (!content_.colours.empty()) content_.colours.resize(mesh_.positions.size(), Eigen::Vector4f::Ones());
     mesh_.colours = std::move(content_.colours);
-    if (content_.unreadable_faces > 0) repairs.push_back(fmt::format("dropped {} faces that are malformed", content_.unreadable_faces));
+    mesh_.objects = std::move(content_.object_names);
+    if (const auto& lines = content_.unreadable_lines; !lines.empty())
+      repairs.push_back(fmt::format("dropped {} faces that are malformed, the first in line {}", lines.size(), lines.front()));
     if (out_of_range_ > 0)
-      repairs.push_back(fmt::format("dropped {} faces with an index beyond the {} vertices", out_of_range_, mesh_.positions.size()));
+      repairs.push_back(fmt::format("dropped {} faces with an index beyond the {} vertices, the first in line {} with {}", out_of_range_,
+                                    mesh_.positions.size(), first_line_, first_index_));
     return std::move(mesh_);
   }
 
  private:
-  void add_polygon(std::span<const Corner> corners, std::uint32_t material) {
-    points_.clear();
-    for (const Corner& c : corners) {
+  bool is_in_range(std::span<const Corner> corners, std::size_t line) {
+    for (const Corner& c : corners)
       if (static_cast<std::size_t>(c.vertex) >= content_.positions.size()) {
-        ++out_of_range_;
-        return;
+        if (out_of_range_++ == 0) {
+          first_line_ = line;
+          first_index_ = static_cast<std::size_t>(c.vertex) + 1;
+        }
+        return false;
       }
-      points_.push_back(content_.positions[static_cast<std::size_t>(c.vertex)]);
-    }
+    return true;
+  }
+
+  void add_polygon(std::span<const Corner> corners, std::size_t polygon) {
+    points_.clear();
+    for (const Corner& c : corners) points_.push_back(content_.positions[static_cast<std::size_t>(c.vertex)]);
     triangles_.clear();
     triangulate(points_, triangles_);
     for (const auto& [a, b, c] : triangles_) {
       const auto vertex = [&](std::uint32_t k) { return static_cast<VertexId>(corners[k].vertex); };
       mesh_.faces.push_back({vertex(a), vertex(b), vertex(c)});
-      if (!content_.material_names.empty()) mesh_.face_materials.push_back(material);
+      if (!content_.material_names.empty()) mesh_.face_materials.push_back(content_.polygon_materials[polygon]);
+      if (!content_.object_names.empty()) mesh_.face_objects.push_back(content_.polygon_objects[polygon]);
       add_corners(mesh_.normals, corners[a].normal, corners[b].normal, corners[c].normal);
       add_corners(mesh_.texture_coordinates, corners[a].coordinate, corners[b].coordinate, corners[c].coordinate);
     }
@@ -195,7 +217,7 @@ class MeshBuilder {
   Scene::Mesh mesh_;
   std::vector<Vec3f> points_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::size_t out_of_range_ = 0;
+  std::size_t out_of_range_ = 0, first_line_ = 0, first_index_ = 0;  // line and index: of the first such face
 };
 
 // Materials by the names that faces use; faces before the first `usemtl` get a plain one.
@@ -205,20 +227,21 @@ std::vector<Scene::Material> materials_of(const File& file, const Content& conte
   std::vector<Scene::Material> materials;
   for (const std::string& name : content.material_names) {
     const auto found = known.find(name);
-    materials.push_back(found != known.end() ? found->second : Scene::Material{name, {0.8f, 0.8f, 0.8f, 1.0f}, {}, {}});
+    materials.push_back(found != known.end() ? found->second : Scene::Material::plain(name));
   }
   return materials;
 }
 
-void give_plain_material(Scene::Mesh& mesh, std::vector<Scene::Material>& materials) {
-  const auto plain = static_cast<std::uint32_t>(materials.size());
-  bool needed = false;
-  for (std::uint32_t& m : mesh.face_materials)
-    if (m == UINT32_MAX) {
-      m = plain;
-      needed = true;
-    }
-  if (needed) materials.push_back({"surface", {0.8f, 0.8f, 0.8f, 1.0f}, {}, {}});
+// Gives faces before the first name the number after the last. Returns whether there were any.
+bool number_first_faces(std::vector<std::uint32_t>& numbers, std::size_t count) {
+  const auto first = std::ranges::count(numbers, UINT32_MAX);
+  std::ranges::replace(numbers, UINT32_MAX, static_cast<std::uint32_t>(count));
+  return first > 0;
+}
+
+void name_first_faces(Scene::Mesh& mesh, std::vector<Scene::Material>& materials) {
+  if (number_first_faces(mesh.face_objects, mesh.objects.size())) mesh.objects.emplace_back();
+  if (number_first_faces(mesh.face_materials, materials.size())) materials.push_back(Scene::Material::plain());
 }
 
 }  // namespace
@@ -228,7 +251,7 @@ Scene import(const File& file) {
   if (content.positions.empty()) throw Error("no vertices");
   std::vector<Scene::Material> materials = materials_of(file, content);
   Scene::Mesh mesh = MeshBuilder(std::move(content)).build(file.repairs);
-  give_plain_material(mesh, materials);
+  name_first_faces(mesh, materials);
   return scene_of(std::move(mesh), std::move(materials));
 }
 

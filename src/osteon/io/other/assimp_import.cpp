@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/io/other/assimp_import.h"
 
+#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
@@ -48,6 +50,7 @@ class Converter {
       }
     if (lost_bones_ > 0) file_.repairs.push_back(fmt::format("{} bones have no node; left out", lost_bones_));
     read_units();
+    tell_losses();
     return std::move(scene_);
   }
 
@@ -77,16 +80,36 @@ class Converter {
     if (source.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == AI_SUCCESS) material.colour.head<3>() << colour.r, colour.g, colour.b;
     if (source.Get(AI_MATKEY_OPACITY, opacity) == AI_SUCCESS) material.colour[3] = opacity;
     for (float& c : material.colour) c = std::isfinite(c) ? std::clamp(c, 0.0f, 1.0f) : 1.0f;
-    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &text) != AI_SUCCESS) return material;
-    if (const aiTexture* embedded = source_.GetEmbeddedTexture(text.C_Str()); embedded && embedded->mHeight == 0) {
-      const auto* bytes = reinterpret_cast<const std::uint8_t*>(embedded->pcData);
-      material.image.assign(bytes, bytes + embedded->mWidth);  // a compressed picture: mWidth is its size in bytes
-    }
-    std::string name = text.C_Str();
-    std::replace(name.begin(), name.end(), '\\', '/');
-    material.texture = file_.path.parent_path() / std::filesystem::path(name).filename();  // absolute paths are another machine's
-    if (const auto relative = file_.path.parent_path() / name; !std::filesystem::path(name).is_absolute()) material.texture = relative;
+    source.Get(AI_MATKEY_ROUGHNESS_FACTOR, material.roughness);
+    if (source.Get(AI_MATKEY_METALLIC_FACTOR, material.metallic) != AI_SUCCESS && is_by_blender_)
+      source.Get(AI_MATKEY_REFLECTIVITY, material.metallic);
+    const auto mend = [](float& share, float otherwise) { share = std::isfinite(share) ? std::clamp(share, 0.0f, 1.0f) : otherwise; };
+    mend(material.metallic, 0.0f);
+    mend(material.roughness, 1.0f);
+    material.base = texture_of(source, {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR});
+    material.normals = texture_of(source, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA});
     return material;
+  }
+
+  // Of the first kind that the material has.
+  Scene::Texture texture_of(const aiMaterial& source, std::initializer_list<aiTextureType> kinds) const {
+    Scene::Texture texture;
+    aiString text;
+    unsigned set = 0;
+    for (const aiTextureType kind : kinds) {
+      if (source.GetTexture(kind, 0, &text, nullptr, &set) != AI_SUCCESS) continue;
+      texture.coordinate_set = set;
+      if (const aiTexture* embedded = source_.GetEmbeddedTexture(text.C_Str()); embedded && embedded->mHeight == 0) {
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(embedded->pcData);
+        texture.image.assign(bytes, bytes + embedded->mWidth);  // a compressed picture: mWidth is its size in bytes
+      }
+      std::string name = text.C_Str();
+      std::replace(name.begin(), name.end(), '\\', '/');
+      texture.file = file_.path.parent_path() / std::filesystem::path(name).filename();  // absolute paths are another machine's
+      if (const auto relative = file_.path.parent_path() / name; !std::filesystem::path(name).is_absolute()) texture.file = relative;
+      break;
+    }
+    return texture;
   }
 
   void add_mesh(const aiMesh& source) {
@@ -103,17 +126,32 @@ class Converter {
     }
     if (source.HasNormals())
       for (const aiVector3D& n : std::span(source.mNormals, source.mNumVertices)) mesh.normals.values.emplace_back(n.x, n.y, n.z);
-    if (source.HasTextureCoords(0))
-      for (const aiVector3D& t : std::span(source.mTextureCoords[0], source.mNumVertices))
-        mesh.texture_coordinates.values.push_back(std::isfinite(t.x) && std::isfinite(t.y) ? Eigen::Vector2f(t.x, 1.0f - t.y)
-                                                                                           : Eigen::Vector2f(0.0f, 0.0f));
+    for (unsigned set = 0; set < source.GetNumUVChannels(); ++set) add_coordinates(source, set, mesh);
     if (source.HasVertexColors(0))
       for (const aiColor4D& c : std::span(source.mColors[0], source.mNumVertices)) mesh.colours.emplace_back(c.r, c.g, c.b, c.a);
     if (!mesh.normals.values.empty()) mesh.normals.corners = corners;
     if (!mesh.texture_coordinates.values.empty()) mesh.texture_coordinates.corners = corners;
     if (source.mMaterialIndex < scene_.materials.size()) mesh.face_materials.assign(mesh.faces.size(), source.mMaterialIndex);
+    for (const aiAnimMesh* shape : std::span(source.mAnimMeshes, source.mNumAnimMeshes)) add_morph(source, *shape, mesh);
     skin_of_mesh_.push_back(add_skin(source, mesh));
     scene_.meshes.push_back(std::move(mesh));
+  }
+
+  static void add_coordinates(const aiMesh& source, unsigned set, Scene::Mesh& mesh) {
+    auto& values = set == 0 ? mesh.texture_coordinates.values : mesh.coordinates_after.emplace_back();
+    for (const aiVector3D& t : std::span(source.mTextureCoords[set], source.mNumVertices))
+      values.push_back(std::isfinite(t.x) && std::isfinite(t.y) ? Eigen::Vector2f(t.x, 1.0f - t.y) : Eigen::Vector2f(0.0f, 0.0f));
+  }
+
+  // Assimp gives the places to which a shape moves the vertices.
+  static void add_morph(const aiMesh& source, const aiAnimMesh& shape, Scene::Mesh& mesh) {
+    if (!shape.HasPositions() || shape.mNumVertices != source.mNumVertices) return;
+    Scene::Morph morph{shape.mName.C_Str(), {}};
+    for (unsigned v = 0; v < source.mNumVertices; ++v) {
+      const aiVector3D offset = shape.mVertices[v] - source.mVertices[v];
+      morph.offsets.emplace_back(offset.x, offset.y, offset.z);
+    }
+    mesh.morphs.push_back(std::move(morph));
   }
 
   std::optional<std::size_t> add_skin(const aiMesh& source, Scene::Mesh& mesh) {
@@ -152,8 +190,47 @@ class Converter {
     if (source_.mMetaData->Get("UpAxis", up)) scene_.up = up == 0 ? UpAxis::x : up == 2 ? UpAxis::z : UpAxis::y;
   }
 
+  void tell_losses() const {
+    const auto tell = [&](const std::string& what) { file_.repairs.push_back("left out " + what); };
+    if (source_.mNumAnimations > 0) {
+      std::vector<std::string> names;
+      for (const aiAnimation* animation : std::span(source_.mAnimations, source_.mNumAnimations))
+        names.push_back(fmt::format("'{}'", animation->mName.C_Str()));
+      tell(fmt::format("{} animations: {}", names.size(), fmt::join(names, ", ")));
+    }
+    for (const auto& [kind, count] : textures_left_out()) tell(fmt::format("the {} textures of {} materials", kind, count));
+    if (source_.mNumCameras > 0) tell(fmt::format("{} cameras", source_.mNumCameras));
+    if (source_.mNumLights > 0) tell(fmt::format("{} lights", source_.mNumLights));
+    const auto has_more_colours = [](const aiMesh* mesh) { return mesh->HasVertexColors(1); };
+    const auto coloured = std::ranges::count_if(std::span(source_.mMeshes, source_.mNumMeshes), has_more_colours);
+    if (coloured > 0) tell(fmt::format("all vertex colours but the first set of {} meshes", coloured));
+  }
+
+  // Kinds of textures that do not come out, and how many materials have them.
+  std::map<std::string, std::size_t> textures_left_out() const {
+    std::map<std::string, std::size_t> out;
+    for (const aiMaterial* material : std::span(source_.mMaterials, source_.mNumMaterials))
+      for (int k = aiTextureType_NONE + 1; k <= AI_TEXTURE_TYPE_MAX; ++k) {
+        const auto kind = static_cast<aiTextureType>(k);
+        const auto has = [&](aiTextureType other) { return material->GetTextureCount(other) > 0; };
+        const bool is_kept = kind == aiTextureType_DIFFUSE || kind == aiTextureType_NORMALS ||
+                             (kind == aiTextureType_BASE_COLOR && !has(aiTextureType_DIFFUSE)) ||
+                             (kind == aiTextureType_NORMAL_CAMERA && !has(aiTextureType_NORMALS));
+        if (!is_kept && has(kind)) ++out[aiTextureTypeToString(kind)];
+      }
+    return out;
+  }
+
+  // Blender writes what is metallic as a reflection factor; others mean something else by it.
+  static bool is_by_blender(const aiScene& source) {
+    aiString generator;
+    return source.mMetaData && source.mMetaData->Get(AI_METADATA_SOURCE_GENERATOR, generator) &&
+           std::string_view(generator.C_Str()).starts_with("Blender");
+  }
+
   const aiScene& source_;
   const File& file_;
+  const bool is_by_blender_ = is_by_blender(source_);
   Scene scene_;
   std::vector<const aiNode*> nodes_;
   std::map<std::string, std::size_t> node_of_name_;

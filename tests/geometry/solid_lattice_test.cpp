@@ -58,6 +58,16 @@ TEST(SolidLattice, every_step_can_be_taken_back) {
     }
 }
 
+TEST(SolidLattice, has_nothing_in_its_margin_even_where_coordinates_are_coarser_than_cells) {
+  const SolidLattice lattice = solid_lattice(shapes::shifted(shapes::box({1, 1, 1}), {1e6f, 0, 0}), 256);
+  ASSERT_GT(lattice.nodes(), 0u);
+  for (const std::uint32_t cell : lattice.cell_of) {
+    const int at = static_cast<int>(cell), line = at / lattice.size.z();
+    const Eigen::Array3i place(line / lattice.size.y(), line % lattice.size.y(), at % lattice.size.z());
+    ASSERT_TRUE((place > 0).all() && (place < lattice.size - 1).all()) << place.transpose();
+  }
+}
+
 TEST(SolidLattice, a_full_box_gets_larger_cells_when_it_may_have_few) {
   EXPECT_LT(solid_lattice(shapes::box({1, 1, 1}), 256, 300000).nodes(), 400000u);
 }

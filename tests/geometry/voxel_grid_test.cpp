@@ -131,6 +131,12 @@ TEST(VoxelGrid, even_a_point_and_a_mesh_without_faces_have_a_grid) {
   EXPECT_FALSE(voxelize(mesh).inside({1, 2, 3}));
 }
 
+TEST(VoxelGrid, has_voxels_even_where_coordinates_are_coarser_than_they_are) {
+  const VoxelGrid grid = voxelize(shapes::shifted(shapes::box({1, 1, 1}), {1e6f, 0, 0}), 256);
+  EXPECT_GT(std::ranges::count(grid.voxels, Voxel::Interior), 0);
+  EXPECT_TRUE(grid.inside({1e6f, 0, 0}));
+}
+
 TEST(BoneSamples, exclude_the_first_end_and_include_the_second) {
   const VoxelGrid grid = voxelize(shapes::box({1, 1, 1}));
   EXPECT_EQ(sample_count({{0, 0, 0}, {1, 0, 0}}), 100);

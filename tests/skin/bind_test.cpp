@@ -169,6 +169,17 @@ TEST(Bind, a_locked_joint_keeps_its_weights) {
   }
 }
 
+TEST(Bind, far_from_the_origin_is_as_good_as_near_to_it) {
+  const Vec3f away(8e6f, 0, -1e5f);  // where floats are half a unit apart, which is more than a cell
+  const TriangleMesh far = shapes::shifted(shapes::capsule(4.0f, 40.0f, 24, 8), away), near = shapes::shifted(far, -away);
+  const Skeleton skeleton = chain(40.0f), there = transformed(skeleton, Eigen::Affine3d(Eigen::Translation3d(away.cast<double>())));
+  for (const Method method : kGeometric) {
+    const SkinWeights a = bind(far, there, by(method)).weights, b = bind(near, skeleton, by(method)).weights;
+    const auto same = std::ranges::count_if(far.positions.ids(), [&](VertexId v) { return a[v][0].joint == b[v][0].joint; });
+    EXPECT_GT(static_cast<double>(same), 0.98 * static_cast<double>(far.positions.size())) << static_cast<int>(method);
+  }
+}
+
 TEST(Bind, a_mesh_without_area_says_so) {
   TriangleMesh mesh;
   for (int i = 0; i < 3; ++i) mesh.positions.push_back({static_cast<float>(i), 0, 0});

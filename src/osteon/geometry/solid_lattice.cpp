@@ -105,9 +105,12 @@ class LatticeBuilder {
  private:
   bool is_inside(std::uint8_t flags) const { return (flags & kVotes) >= kMajority && !(flags & kOverlap); }
 
+  // Far from the origin coordinates may be coarser than cells: nothing is put into the margin all the same.
   std::array<Array3f, 3> in_cells(FaceId f) const {
+    const Array3f end = out_.size.cast<float>() - 1.0f;
     std::array<Array3f, 3> out;
-    for (std::size_t k = 0; k < 3; ++k) out[k] = ((mesh_.positions[mesh_.faces[f][k]] - out_.origin) / out_.cell).array();
+    for (std::size_t k = 0; k < 3; ++k)
+      out[k] = ((mesh_.positions[mesh_.faces[f][k]] - out_.origin) / out_.cell).array().max(1.0f).min(end);
     return out;
   }
 

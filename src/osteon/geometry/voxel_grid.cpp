@@ -31,10 +31,12 @@ VoxelGrid empty_grid(const TriangleMesh& mesh, int resolution) {
 }
 
 std::vector<Corners> corners_in_cells(const TriangleMesh& mesh, const VoxelGrid& grid) {
+  const Array3f end = grid.size.cast<float>() - 1.0f;
   std::vector<Corners> out;
   out.reserve(mesh.faces.size());
   for (const auto& [a, b, c] : mesh.faces) {
-    const auto in_cells = [&](VertexId v) -> Array3f { return ((mesh.positions[v] - grid.origin) / grid.cell).array(); };
+    // Far from the origin coordinates may be coarser than cells: nothing is put into the margin all the same.
+    const auto in_cells = [&](VertexId v) -> Array3f { return ((mesh.positions[v] - grid.origin) / grid.cell).array().max(1.0f).min(end); };
     out.push_back({in_cells(a), in_cells(b), in_cells(c)});
   }
   return out;

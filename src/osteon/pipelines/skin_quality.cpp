@@ -7,8 +7,10 @@
 
 #include "osteon/geometry/body_lattice.h"
 #include "osteon/geometry/mirror_pairs.h"
+#include "osteon/geometry/shift_to_origin.h"
 #include "osteon/geometry/symmetry.h"
 #include "osteon/geometry/working_mesh.h"
+#include "osteon/mesh/shapes.h"
 #include "osteon/pipelines/mirrored_skin.h"
 #include "osteon/skin/binding_bones.h"
 #include "osteon/skin/bone_distances.h"
@@ -37,8 +39,10 @@ double half_l1(std::span<const Influence> a, std::span<const Influence> b, const
 }
 
 void measure_distances(const Rig& rig, const geometry::CleanMesh& clean, SkinQuality& quality) {
-  geometry::BodyLattice body(clean.mesh, {.resolution = kResolution});
-  const std::vector<Bone> bones = skin::binding_bones(rig.skeleton, body);
+  const Vec3f shift = geometry::shift_to_origin(clean.mesh);
+  geometry::BodyLattice body(shapes::shifted(clean.mesh, shift), {.resolution = kResolution});
+  const std::vector<Bone> bones =
+      skin::binding_bones(transformed(rig.skeleton, Eigen::Affine3d(Eigen::Translation3d(shift.cast<double>()))), body);
   const skin::BoneDistances distances = skin::bone_distances(body, bones);
   const float reach = kReach * bounds(rig.mesh).sizes().maxCoeff();
   for (VertexId v : rig.mesh.positions.ids()) {

@@ -9,6 +9,8 @@
 #include "osteon/geometry/body_lattice.h"
 #include "osteon/geometry/cleanup.h"
 #include "osteon/geometry/neighbourhoods.h"
+#include "osteon/geometry/shift_to_origin.h"
+#include "osteon/mesh/shapes.h"
 #include "osteon/skin/biharmonic.h"
 #include "osteon/skin/binding_bones.h"
 #include "osteon/skin/heat.h"
@@ -19,23 +21,29 @@ namespace {
 constexpr int kBiharmonicResolution = 40;
 constexpr std::size_t kBiharmonicNodes = 6000;
 
+// Near the origin: elsewhere coordinates may be coarser than the lattice's cells.
 struct Body {
+  Vec3f shift;  // from the mesh that was given
   geometry::CleanMesh clean;
+  Skeleton skeleton;
   std::vector<Bone> bones;
   BoneDistances distances;
 };
 
 Body measured(const TriangleMesh& mesh, const Skeleton& skeleton, int resolution) {
-  Body out{geometry::clean(mesh), {}, {}};
+  Body out{Vec3f::Zero(), geometry::clean(mesh), skeleton, {}, {}};
   if (out.clean.mesh.faces.empty()) throw Error("the mesh has no face with an area: there is nothing to bind");
+  out.shift = geometry::shift_to_origin(out.clean.mesh);
+  out.clean.mesh = shapes::shifted(std::move(out.clean.mesh), out.shift);
+  out.skeleton = transformed(std::move(out.skeleton), Eigen::Affine3d(Eigen::Translation3d(out.shift.cast<double>())));
   geometry::BodyLattice body(out.clean.mesh, {.resolution = resolution});
-  out.bones = binding_bones(skeleton, body);
+  out.bones = binding_bones(out.skeleton, body);
   out.distances = bone_distances(body, out.bones);
-  lengthen_past_ends(out.distances, out.clean.mesh.positions, out.bones, skeleton);
+  lengthen_past_ends(out.distances, out.clean.mesh.positions, out.bones, out.skeleton);
   return out;
 }
 
-WeightRows raw_weights(const Body& body, const Skeleton& skeleton, const BindOptions& options, std::vector<std::string>& notes) {
+WeightRows raw_weights(const Body& body, const BindOptions& options, std::vector<std::string>& notes) {
   const TriangleMesh& mesh = body.clean.mesh;
   switch (options.method) {
     case Method::rigid:
@@ -50,7 +58,9 @@ WeightRows raw_weights(const Body& body, const Skeleton& skeleton, const BindOpt
     }
     case Method::transfer: {
       assert(options.from);
-      Transfer transfer = transferred_weights(mesh, *options.from, joints_by_name(options.from->skeleton, skeleton), options.transfer);
+      Rig from = *options.from;
+      from.mesh = shapes::shifted(std::move(from.mesh), body.shift);
+      Transfer transfer = transferred_weights(mesh, from, joints_by_name(from.skeleton, body.skeleton), options.transfer);
       notes.push_back(fmt::format("{} vertices took the weights of the reference, {} were inpainted", transfer.taken, transfer.inpainted));
       return std::move(transfer.rows);
     }
@@ -107,9 +117,9 @@ Binding bind(const TriangleMesh& mesh, const Skeleton& skeleton, const BindOptio
   Binding out;
   const Body body = measured(mesh, skeleton, options.resolution);
   out.repairs = body.clean.repairs;
-  WeightRows rows = raw_weights(body, skeleton, options, out.notes);
+  WeightRows rows = raw_weights(body, options, out.notes);
   if (options.islands == Islands::rigid && options.method != Method::transfer)
-    out.rigid_islands = make_islands_rigid(rows, body.clean.mesh, skeleton, options.island);
+    out.rigid_islands = make_islands_rigid(rows, body.clean.mesh, body.skeleton, options.island);
   if (rounds(options) > 0) rows = smoothed(std::move(rows), geometry::one_ring(body.clean.mesh), rounds(options));
   prune(rows, options.prune_share.value_or(0.05f), options.max_influences);
   out.weights = to_skin_weights(rows, body.clean.from_original);

@@ -2,6 +2,7 @@
 #include "osteon/geometry/decimate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "geometry/mesh_makers.h"
@@ -108,6 +109,19 @@ TEST(Decimate, open_and_non_manifold_meshes_reach_the_target) {
     EXPECT_EQ(reduced.mesh.positions.size(), 60u);
     EXPECT_NEAR(surface_area(reduced.mesh) / surface_area(mesh), 1, 0.03);
   }
+}
+
+TEST(Decimate, ends_where_the_cheapest_edge_cannot_be_merged) {
+  TriangleMesh book;  // all pages have the back's edge: hardly any two merges go together in a round
+  for (const Vec3f& p : {Vec3f(0, 0, 0), Vec3f(0, 1, 0)}) book.positions.push_back(p);
+  for (int page = 0; page < 200; ++page) {
+    const float angle = 0.03f * static_cast<float>(page);
+    const VertexId corner = book.positions.push_back({std::cos(angle), 0.5f, std::sin(angle)});
+    book.faces.push_back({VertexId{0}, VertexId{1}, corner});
+  }
+  const VertexId loose = book.positions.push_back({2, 2, 2});  // a tiny triangle: its edges are the cheapest and its last
+  book.faces.push_back({loose, book.positions.push_back({2.001f, 2, 2}), book.positions.push_back({2, 2.001f, 2})});
+  EXPECT_LE(decimate(book, {.target_vertices = 60}).mesh.positions.size(), 70u);
 }
 
 TEST(Decimate, does_not_depend_on_the_unit) {

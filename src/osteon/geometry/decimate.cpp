@@ -284,7 +284,8 @@ DecimatedMesh decimate(const TriangleMesh& mesh, const DecimateOptions& options)
     const bool far = work.vertices() > kFar * options.target_vertices;
     const double usual = far ? kShareFar : kShareNear;
     share = std::max(share, usual);
-    const auto candidates = static_cast<std::size_t>(share * static_cast<double>(work.vertices())) + 1;
+    const double wished = share * static_cast<double>(work.vertices());
+    const auto candidates = static_cast<std::size_t>(std::min(wished, static_cast<double>(work.edges()))) + 1;
     const std::size_t merged = work.round(candidates, far ? Order::by_place : Order::by_cost, work.vertices() - options.target_vertices);
     if (merged == 0 && candidates >= work.edges()) break;  // every edge that is left holds the shape
     share = merged * 10 < candidates ? 2 * share : usual;  // most of the cheapest cannot be merged: look further

@@ -115,6 +115,15 @@ TEST(VolumetricGeodesic, of_a_bone_outside_enters_at_its_nearest_point) {
   }
 }
 
+TEST(VolumetricGeodesic, of_a_bone_to_a_joint_astray_is_that_to_its_part_in_the_body) {
+  const TriangleMesh limb = shapes::capsule(0.1f, 0.8f, 24, 12);
+  const auto to_side = distances(limb, {{0, 0.4f, 0}, {0, 0.4f, 1}});
+  for (const float far : {1e5f, 1e9f, 1e15f}) {
+    const auto astray = distances(limb, {{0, 0.4f, 0}, {0, 0.4f, far}});
+    EXPECT_LT((astray - to_side).cwiseAbs().maxCoeff(), 0.15f) << far;
+  }
+}
+
 TEST(VolumetricGeodesic, reaches_both_sides_of_a_thin_wing_beside_the_bone) {
   const TriangleMesh wing = shapes::transformed(shapes::icosphere(4, 0.5f), Transform(Eigen::Scaling(1.0f, 0.004f, 0.6f)));
   const Segment bone{{-0.3f, 0.005f, 0}, {0.3f, 0.005f, 0}};  // just above the upper side

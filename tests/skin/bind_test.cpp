@@ -169,6 +169,18 @@ TEST(Bind, a_locked_joint_keeps_its_weights) {
   }
 }
 
+TEST(Bind, a_joint_astray_has_no_weight) {
+  const TriangleMesh body = shapes::capsule(0.2f, 2.0f, 24, 8);
+  for (const float far : {1e5f, 1e9f, 1e15f}) {
+    Skeleton skeleton = chain(2.0f);
+    const JointId astray = skeleton.add("astray", JointId{0}, {0, 0, far});
+    for (const Method method : kGeometric) {
+      const SkinWeights weights = bind(body, skeleton, by(method)).weights;
+      for (VertexId v : body.positions.ids()) ASSERT_TRUE(std::ranges::find(weights[v], astray, &Influence::joint) == weights[v].end());
+    }
+  }
+}
+
 TEST(Bind, far_from_the_origin_is_as_good_as_near_to_it) {
   const Vec3f away(8e6f, 0, -1e5f);  // where floats are half a unit apart, which is more than a cell
   const TriangleMesh far = shapes::shifted(shapes::capsule(4.0f, 40.0f, 24, 8), away), near = shapes::shifted(far, -away);

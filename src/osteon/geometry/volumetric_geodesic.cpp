@@ -20,8 +20,9 @@
 namespace osteon::geometry {
 namespace {
 
-constexpr float kBridge = 0.02f;      // as in geodesic_balls
-constexpr float kSampleStep = 0.02f;  // along a bone; two voxels of the 88^3 grid
+constexpr float kBridge = 0.02f;       // as in geodesic_balls
+constexpr float kSampleStep = 0.02f;   // along a bone; two voxels of the 88^3 grid
+constexpr float kMostSteps = 4096.0f;  // of a bone: longer ones, which lead to a joint astray, get longer steps
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kVerticesPerTask = 32;
 
@@ -40,7 +41,7 @@ struct Sample {
 Vec3f point_at(const Segment& bone, float t) { return (1.0f - t) * bone.a + t * bone.b; }
 
 std::vector<Sample> sampled(const Segment& bone, const BodyLines& lines) {
-  const int steps = static_cast<int>(std::ceil((bone.b - bone.a).norm() / kSampleStep));
+  const int steps = static_cast<int>(std::min(std::ceil((bone.b - bone.a).norm() / kSampleStep), kMostSteps));
   std::vector<Sample> samples;
   for (int i = 0; i <= steps; ++i) {
     const Vec3f p = point_at(bone, steps > 0 ? static_cast<float>(i) / static_cast<float>(steps) : 0.0f);

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "osteon/base/parallel.h"
@@ -19,6 +20,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kVerticesPerTask = 1024;
 constexpr float kPastEnd = 2.0f, kBeforeStart = 0.5f;  // see lengthen_past_ends
 constexpr int kMostOutsideSamples = 64;                // of a bone, where it is outside the body
+constexpr float kMostSteps = 131072.0f;                // of half a cell along a bone: one to a joint astray gets longer ones
 
 Vec3f nearest_on(const Segment& s, const Vec3f& p) {
   const Vec3f d = s.b - s.a;
@@ -48,7 +50,7 @@ std::vector<Source> sources_of(std::uint32_t bone, const Segment& segment, const
     const float t = steps > 0 ? static_cast<float>(i) / static_cast<float>(steps) : 0.0f;
     return (1.0f - t) * segment.a + t * segment.b;
   };
-  const int steps = static_cast<int>(std::ceil(2.0f * length / solid.cell));
+  const int steps = static_cast<int>(std::min(std::ceil(2.0f * length / solid.cell), kMostSteps));
   for (int i = 0; i <= steps; ++i)
     if (const std::uint32_t n = solid.node_at(solid.cell_at(point(i, steps))); n != SolidLattice::kNone)
       if (out.empty() || out.back().node != n) out.push_back({n, bone, straight_distance(segment, solid.positions[n])});
@@ -78,13 +80,13 @@ class Ways {
   void run(std::span<const Source> sources, const IsNear& is_near) {
     for (const Source& s : sources)
       if (put(s.node, s.distance, s.bone)) sees_[s.node] = !body_.is_vertex(s.node);
-    for (std::size_t b = 0; b < buckets_.size(); ++b)
-      while (!buckets_[b].empty()) {  // what is put meanwhile goes into this bucket or later ones
-        const auto [node, distance] = buckets_[b].back();
-        buckets_[b].pop_back();
+    for (auto& [number, bucket] : buckets_)
+      while (!bucket.empty()) {  // what is put meanwhile goes into this bucket or later ones
+        const auto [node, distance] = bucket.back();
+        bucket.pop_back();
         if (distance > distances_[node] || !is_near(node, distance)) continue;
         look_straight(node);
-        current_ = b;
+        current_ = number;
         const float here = distances_[node];
         body_.visit_edges(node, [&](std::uint32_t to, float length) {
           if (here + length < distances_[to] && put(to, here + length, bone_[node])) sees_[to] = false;
@@ -100,9 +102,7 @@ class Ways {
     if (!(distance < distances_[node])) return false;
     distances_[node] = distance;
     bone_[node] = bone;
-    const std::size_t bucket = std::max(current_, static_cast<std::size_t>(distance / width_));
-    if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
-    buckets_[bucket].push_back({node, distance});
+    buckets_[std::max(current_, static_cast<std::uint64_t>(distance / width_))].push_back({node, distance});
     return true;
   }
 
@@ -142,8 +142,8 @@ class Ways {
   std::vector<float> distances_;
   std::vector<std::uint32_t> bone_;
   std::vector<bool> sees_;
-  std::vector<std::vector<Entry>> buckets_;  // by distance
-  std::size_t current_ = 0;
+  std::map<std::uint64_t, std::vector<Entry>> buckets_;  // by distance: a joint astray may be any number of cells away
+  std::uint64_t current_ = 0;
   float width_;
 };
 

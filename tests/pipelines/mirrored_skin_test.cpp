@@ -27,6 +27,20 @@ TEST(MirroredSkin, partners_of_joints_are_their_images) {
   EXPECT_EQ(mirror_partners(s, s.rest_positions, kMirror), kPartners);
 }
 
+TEST(MirroredSkin, of_stacked_joints_those_are_partners_whose_parents_are) {
+  Skeleton s;
+  const JointId root = s.add("root", std::nullopt, {0, 1, 0}), pelvis = s.add("pelvis", root, {0, 1, 0});
+  for (const float side : {1.0f, -1.0f}) {
+    const Vec3f at(side * 0.1f, 0.9f, 0);
+    const std::string name = side > 0 ? "left" : "right";
+    const JointId leg = s.add(name + "_leg", pelvis, at);
+    s.add(name + "_twist_1", leg, at);
+    s.add(name + "_twist_2", leg, at);
+  }
+  const PerJoint<JointId> expected{root, pelvis, JointId{5}, JointId{6}, JointId{7}, JointId{2}, JointId{3}, JointId{4}};
+  EXPECT_EQ(mirror_partners(s, s.rest_positions, kMirror), expected);
+}
+
 TEST(MirroredSkin, a_skeleton_with_something_one_sided_has_no_partners) {
   Skeleton sword = legs();
   sword.add("sword", JointId{4}, {-0.5f, 0.1f, 0});

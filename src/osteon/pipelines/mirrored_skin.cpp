@@ -11,22 +11,21 @@
 namespace osteon::pipelines {
 namespace {
 
-constexpr float kSameJoint = 0.01f, kOnSurface = 0.02f;
+constexpr float kSameJoint = 0.01f, kSamePlace = 1e-4f, kOnSurface = 0.02f;
 
-std::optional<JointId> nearest(const Vec3f& place, const PerJoint<Vec3f>& positions) {
-  std::optional<JointId> best;
+// The joints nearest to a place: several where they are stacked.
+std::vector<JointId> nearest(const Vec3f& place, const PerJoint<Vec3f>& positions) {
   float least = kSameJoint;
+  for (const Vec3f& p : positions) least = std::min(least, (p - place).norm());
+  std::vector<JointId> out;
   for (JointId j : positions.ids())
-    if (const float d = (positions[j] - place).norm(); d < least) {
-      least = d;
-      best = j;
-    }
-  return best;
+    if (const float d = (positions[j] - place).norm(); d < kSameJoint && d <= least + kSamePlace) out.push_back(j);
+  return out;
 }
 
-bool parents_are_partners(const Skeleton& skeleton, const PerJoint<JointId>& partner, JointId j) {
-  const auto &mine = skeleton.parents[j], &theirs = skeleton.parents[partner[j]];
-  return !mine || !theirs || partner[*mine] == *theirs;
+bool parents_are_partners(const Skeleton& skeleton, const PerJoint<JointId>& partner, JointId a, JointId b) {
+  const auto &mine = skeleton.parents[a], &theirs = skeleton.parents[b];
+  return mine && theirs ? partner[*mine] == *theirs : a == b;
 }
 
 using Row = std::vector<Influence>;
@@ -60,13 +59,18 @@ Row exchanged(std::span<const Influence> row, const PerJoint<JointId>& partner) 
 
 std::optional<PerJoint<JointId>> mirror_partners(const Skeleton& skeleton, const PerJoint<Vec3f>& positions, const Plane& plane) {
   PerJoint<JointId> partner;
-  for (const Vec3f& p : positions) {
-    const auto found = nearest(plane.mirror(p), positions);
-    if (!found) return std::nullopt;
-    partner.push_back(*found);
+  for (JointId j : positions.ids()) {
+    std::vector<JointId> found = nearest(plane.mirror(positions[j]), positions);
+    std::erase_if(found, [&](JointId other) { return std::ranges::find(partner, other) != partner.end(); });
+    if (found.empty()) return std::nullopt;
+    // Of stacked joints the one that hangs on the partner of this one's parent.
+    const auto alike = std::ranges::find_if(found, [&](JointId other) { return parents_are_partners(skeleton, partner, j, other); });
+    partner.push_back(alike != found.end() ? *alike : found.front());
   }
-  for (JointId j : partner.ids())
-    if (partner[partner[j]] != j || !parents_are_partners(skeleton, partner, j)) return std::nullopt;
+  for (JointId j : partner.ids()) {
+    const bool has_root = !skeleton.parents[j] || !skeleton.parents[partner[j]];
+    if (partner[partner[j]] != j || (!has_root && !parents_are_partners(skeleton, partner, j, partner[j]))) return std::nullopt;
+  }
   return partner;
 }
 

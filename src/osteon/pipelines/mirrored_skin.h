@@ -11,8 +11,9 @@
 // The skin of a symmetric skeleton, symmetric too.
 namespace osteon::pipelines {
 
-// Each joint's mirror partner: the joint nearest to its image, within 0.01; a joint on the plane is its own. Empty unless the whole tree is
-// its own mirror image: everybody is its partner's partner, and the partners' parents are partners (but for a root with a partner).
+// Each joint's mirror partner: the joint nearest to its image, within 0.01, and of several at one place the one with the partner of its
+// parent for a parent, in joint order; a joint on the plane is its own. Empty unless the whole tree is its own mirror image: everybody is
+// its partner's partner, and the partners' parents are partners (but for a root with a partner).
 // Pre: `positions` are in the frame and unit of `plane`, longest side of the character 1.
 std::optional<PerJoint<JointId>> mirror_partners(const Skeleton& skeleton, const PerJoint<Vec3f>& positions, const Plane& plane);
 

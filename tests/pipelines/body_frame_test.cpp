@@ -45,6 +45,12 @@ TEST(BodyFrame, of_a_shape_alike_before_and_behind_has_the_widest_side_along_x_a
   }
 }
 
+TEST(BodyFrame, does_not_look_at_vertices_that_no_face_uses) {
+  TriangleMesh mesh = shapes::shifted(shapes::box({0.5f, 1, 0.3f}), {0, 0.5f, 0});
+  mesh.positions.push_back({0, 0, 30});
+  EXPECT_TRUE(body_frame(mesh, Up::automatic).turn.isIdentity(0));
+}
+
 TEST(BodyFrame, is_aligned_with_the_plane_of_symmetry) {
   for (float angle : {0.3f, 1.2f, -0.6f}) {
     const Eigen::Matrix3f turn = Eigen::AngleAxisf(angle, Vec3f::UnitY()).toRotationMatrix();

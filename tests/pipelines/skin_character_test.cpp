@@ -38,6 +38,13 @@ TEST(SkinCharacter, mirror_makes_the_halves_equal_bit_by_bit) {
   EXPECT_LT(*skin_quality(rig).asymmetry, 1e-6);
 }
 
+TEST(SkinCharacter, symmetry_does_not_depend_on_vertices_that_no_face_uses) {
+  Rig rig = test::biped();
+  if (!mirror_map(rig.mesh, rig.skeleton)) GTEST_SKIP() << "this character wears something on one side";
+  rig.mesh.positions.push_back({30, 0, 0});
+  EXPECT_TRUE(mirror_map(rig.mesh, rig.skeleton));
+}
+
 TEST(SkinCharacter, mirror_says_so_where_nothing_is_symmetric) {
   Rig rig = test::biped();
   rig.skeleton.rest_positions[JointId{1}].x() += 0.2f;
@@ -151,7 +158,8 @@ TEST(SkinQuality, a_skin_by_its_own_bones_leaks_less_than_one_by_any) {
 }
 
 TEST(SkeletonFit, leaves_a_skeleton_that_fits_alone) {
-  const Rig rig = test::biped();
+  Rig rig = test::biped();
+  rig.mesh.positions.push_back({30, 0, 0});  // no face uses it
   const SkeletonFit fit = fit_skeleton(rig.skeleton, rig.mesh);
   EXPECT_TRUE(fit.to_body.matrix().isIdentity(0.0));
   EXPECT_EQ(fit.note, "");

@@ -3,17 +3,12 @@
 
 #include <algorithm>
 
+#include "osteon/geometry/box_of_faces.h"
+
 namespace osteon::geometry {
 namespace {
 
 constexpr float kStanding = 0.05f, kSunkDeeper = 0.15f;
-
-Eigen::AlignedBox3f box_of_faces(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3f box;
-  for (const Triangle& face : mesh.faces)
-    for (VertexId v : face) box.extend(mesh.positions[v]);
-  return box;
-}
 
 float sunk(const Eigen::AlignedBox3f& box, Eigen::Index axis) {
   const float height = box.sizes()[axis];

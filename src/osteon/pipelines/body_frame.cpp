@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "osteon/geometry/box_of_faces.h"
 #include "osteon/geometry/stance.h"
 
 namespace osteon::pipelines {
@@ -16,7 +17,7 @@ constexpr float kClearlyFiner = 0.01f;
 constexpr float kFiner = 1e-3f;
 
 Eigen::Matrix3f with_widest_side_along_x(const Eigen::Matrix3f& turn, const TriangleMesh& mesh) {
-  const Vec3f sides = bounds(turned(mesh, turn)).sizes();
+  const Vec3f sides = geometry::box_of_faces(turned(mesh, turn)).sizes();
   return sides.z() > sides.x() ? Eigen::Matrix3f(geometry::turn_to_front(Vec3f::UnitX()) * turn) : turn;
 }
 

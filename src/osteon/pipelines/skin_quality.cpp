@@ -44,7 +44,7 @@ void measure_distances(const Rig& rig, const geometry::CleanMesh& clean, SkinQua
   const std::vector<Bone> bones =
       skin::binding_bones(transformed(rig.skeleton, Eigen::Affine3d(Eigen::Translation3d(shift.cast<double>()))), body);
   const skin::BoneDistances distances = skin::bone_distances(body, bones);
-  const float reach = kReach * bounds(rig.mesh).sizes().maxCoeff();
+  const float reach = kReach * bounds(clean.mesh).sizes().maxCoeff();
   for (VertexId v : rig.mesh.positions.ids()) {
     const auto near = distances.of(clean.from_original[v]);
     quality.coverage += near.front().distance <= reach;
@@ -78,11 +78,11 @@ double asymmetry(const Rig& rig, const MirrorMap& mirror) {
 }  // namespace
 
 std::optional<MirrorMap> mirror_map(const TriangleMesh& mesh, const Skeleton& skeleton) {
-  const geometry::Normalization frame = geometry::normalization_of(mesh);
   const geometry::CleanMesh clean = geometry::clean(mesh);
+  if (clean.mesh.faces.empty()) return std::nullopt;
+  const geometry::Normalization frame = geometry::normalization_of(clean.mesh);
   TriangleMesh normalised = clean.mesh;
   for (Vec3f& p : normalised.positions) p = frame.apply(p);
-  if (normalised.faces.empty()) return std::nullopt;
   const auto plane = geometry::symmetry_plane(normalised);
   if (!plane) return std::nullopt;
   const auto pairs = geometry::mirror_pairs(normalised, *plane);

@@ -122,6 +122,14 @@ TEST(Bvh, of_equal_answers_the_smallest_face_is_given) {
   EXPECT_EQ(bvh.closest_point({0.1f, 0.9f, 1}).face, FaceId{1});
 }
 
+TEST(Bvh, a_point_too_far_away_for_the_square_of_its_distance_has_a_nearest_face_all_the_same) {
+  for (const float far : {1e25f, -3e38f}) {
+    const ClosestPoint nearest = Bvh(shapes::icosphere(2)).closest_point({far, 0, far});
+    EXPECT_EQ(nearest.face, FaceId{0});
+    EXPECT_NEAR(nearest.barycentric.sum(), 1, 1e-6f);
+  }
+}
+
 TEST(Bvh, a_mesh_without_faces_is_never_hit) {
   TriangleMesh mesh;
   mesh.positions = {Vec3f(0, 0, 0)};

@@ -442,7 +442,7 @@ ClosestPoint Bvh::closest_point(const Vec3f& p) const {
   assert(!nodes_.empty());
   ClosestPoint best{FaceId{~0u}, Vec3f::Zero(), Vec3f::Zero(), 0};
   float best2 = kInfinity;
-  Waiting waiting;  // by the squared distance to the box
+  Waiting waiting;  // by the squared distance to the box, which is infinite where floats overflow: the smallest face is the answer then
   waiting.push(0, 0.0f);
   while (!waiting.empty()) {
     const auto [at, box2] = waiting.pop();
@@ -470,7 +470,7 @@ ClosestPoint Bvh::closest_point(const Vec3f& p) const {
       }
     const std::size_t before = waiting.size();
     for (std::size_t l = 0; l < 4; ++l)
-      if (squared[l] <= best2 * 1.00001f && squared[l] < kInfinity) waiting.push(node.child[l], squared[l]);
+      if (node.child[l] != 0 && squared[l] <= best2 * 1.00001f) waiting.push(node.child[l], squared[l]);
     waiting.sort_from(before);
   }
   best.distance = std::sqrt(best2);

@@ -313,22 +313,28 @@ Grown grow_to_count(const JointCandidates& seen, float wanted, const Body& body,
   return grown;
 }
 
+// Without the joints that a hand took the place of. `evidence`: of the joints that were found.
+CharacterEvidence evidence_of(const Grown& grown, const std::vector<JointEvidence>& evidence) {
+  std::vector<JointEvidence> of_body;
+  for (const auto& joint : grown.skeleton.from)
+    if (joint) of_body.push_back(evidence[*joint]);
+  return character_evidence(of_body, grown.found.explained, grown.skeleton.tree.likelihood);
+}
+
+bool are_usual_joints(const RignetOptions& options) {
+  return !options.joints && !options.bandwidth && options.detail == RignetOptions{}.detail;
+}
+
 // Whether it is a character at all is asked of the usual joints, whatever number is wished: fewer would explain less of what is seen, and
 // more would have less certain bones.
-CharacterEvidence evidence_of_character(const JointCandidates& seen, const Grown& grown, const Body& body,
-                                        const infer::RignetModels& models, const RignetOptions& options, Stages& stages) {
+CharacterEvidence evidence_of_usual_joints(const JointCandidates& seen, const Body& body, const infer::RignetModels& models,
+                                           const RignetOptions& options, Stages& stages) {
   RignetOptions usual = options;
   usual.detail = RignetOptions{}.detail;
   usual.bandwidth.reset();
   usual.joints.reset();
-  const bool is_usual = !options.joints && !options.bandwidth && options.detail == usual.detail;
-  const Grown judged =
-      is_usual ? grown : grow(seen, expected_joints(body.triangles, usual.detail), std::nullopt, false, body, models, usual, stages);
-  const std::vector<JointEvidence> evidence = joint_evidence(seen, judged.found.joints, body.working.mesh);
-  std::vector<JointEvidence> of_body;  // without what a hand was put in the place of
-  for (const auto& joint : judged.skeleton.from)
-    if (joint) of_body.push_back(evidence[*joint]);
-  return character_evidence(of_body, judged.found.explained, judged.skeleton.tree.likelihood);
+  const Grown grown = grow(seen, expected_joints(body.triangles, usual.detail), std::nullopt, false, body, models, usual, stages);
+  return evidence_of(grown, joint_evidence(seen, grown.found.joints, body.working.mesh));
 }
 
 // In the body's frame, in the unit of the mesh.
@@ -350,8 +356,10 @@ Skeleton predict_skeleton(const Body& body, const infer::RignetModels& models, c
                                     grown.skeleton.part);
   PerJoint<std::optional<std::size_t>> from;
   for (std::size_t joint : made.from) from.push_back(grown.skeleton.from[joint]);
-  judge_joints(joint_evidence(seen, grown.found.joints, body.working.mesh), from, result);
-  result.character_evidence = evidence_of_character(seen, grown, body, models, options, stages);
+  const std::vector<JointEvidence> evidence = joint_evidence(seen, grown.found.joints, body.working.mesh);
+  judge_joints(evidence, from, result);
+  result.character_evidence =
+      are_usual_joints(options) ? evidence_of(grown, evidence) : evidence_of_usual_joints(seen, body, models, options, stages);
   report.character = character_probability(result.character_evidence);
   const auto& sure = report.joint_confidence;
   report.confidence = *report.character * std::accumulate(sure.begin(), sure.end(), 0.0f) / static_cast<float>(sure.size());

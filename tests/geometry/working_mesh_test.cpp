@@ -51,6 +51,13 @@ TEST(WorkingMesh, has_about_as_many_vertices_as_wanted) {
   }
 }
 
+TEST(WorkingMesh, of_a_body_inside_out_is_that_of_the_body) {
+  const TriangleMesh body = shapes::icosphere(5);
+  const WorkingMesh working = make_working_mesh(test::flipped(body));
+  expect_same_bytes(working.mesh, make_working_mesh(body).mesh);
+  EXPECT_THAT(working.clean.repairs, testing::ElementsAre(HasSubstr("inside out")));
+}
+
 TEST(WorkingMesh, does_not_depend_on_the_order_of_vertices_and_faces_nor_on_threads) {
   auto meshes = test::awkward_meshes();
   meshes.emplace_back("large sphere", shapes::icosphere(5));

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "osteon/base/parallel.h"
+#include "osteon/geometry/orientation.h"
 #include "osteon/geometry/union_find.h"
 
 namespace osteon::geometry {

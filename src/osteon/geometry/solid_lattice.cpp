@@ -9,6 +9,7 @@
 #include "osteon/base/parallel.h"
 #include "osteon/geometry/axis_crossings.h"
 #include "osteon/geometry/buckets.h"
+#include "osteon/geometry/orientation.h"
 
 namespace osteon::geometry {
 namespace {
@@ -206,26 +207,6 @@ const std::array<Eigen::Array3i, 26>& lattice_steps() {
     return out;
   }();
   return steps;
-}
-
-TriangleMesh faced_outwards(TriangleMesh mesh, const Components& parts) {
-  std::vector<double> volumes(parts.count, 0.0);
-  std::vector<Eigen::Vector3d> pivots(parts.count);  // near the part, so that an open one is judged by its shape and not by where it is
-  std::vector<double> counts(parts.count, 0.0);
-  for (std::uint32_t p = 0; p < parts.count; ++p) pivots[p].setZero();
-  for (VertexId v : mesh.positions.ids()) {
-    pivots[parts.of[v]] += mesh.positions[v].cast<double>();
-    ++counts[parts.of[v]];
-  }
-  for (std::uint32_t p = 0; p < parts.count; ++p) pivots[p] /= counts[p];
-  for (const auto& [a, b, c] : mesh.faces) {
-    const std::uint32_t part = parts.of[a];
-    const auto from = [&](VertexId v) -> Eigen::Vector3d { return mesh.positions[v].cast<double>() - pivots[part]; };
-    volumes[part] += from(a).dot(from(b).cross(from(c)));
-  }
-  for (Triangle& face : mesh.faces)
-    if (volumes[parts.of[face[0]]] < 0.0) std::swap(face[1], face[2]);
-  return mesh;
 }
 
 SolidLattice solid_lattice(const TriangleMesh& mesh, int resolution, std::size_t most_nodes) {

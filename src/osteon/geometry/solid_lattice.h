@@ -45,7 +45,4 @@ const std::array<Eigen::Array3i, 26>& lattice_steps();
 // Pre: validate(mesh) holds; resolution > 0.
 SolidLattice solid_lattice(const TriangleMesh& mesh, int resolution, std::size_t most_nodes = SIZE_MAX);
 
-// The mesh with the faces of those components turned that enclose a negative volume.
-TriangleMesh faced_outwards(TriangleMesh mesh, const Components& parts);
-
 }  // namespace osteon::geometry

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/geometry/working_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -12,6 +14,7 @@
 #include "osteon/geometry/buckets.h"
 #include "osteon/geometry/bvh.h"
 #include "osteon/geometry/decimate.h"
+#include "osteon/geometry/orientation.h"
 #include "osteon/geometry/subdivide.h"
 
 namespace osteon::geometry {
@@ -129,6 +132,8 @@ WorkingMesh make_working_mesh(const TriangleMesh& original, const WorkingMeshOpt
   WorkingMesh out;
   out.clean = clean(original);
   if (out.clean.mesh.faces.empty()) throw Error("the mesh has {} faces, but none with area", original.faces.size());
+  if (const std::size_t turned = turn_inside_out(out.clean.mesh))
+    out.clean.repairs.push_back(fmt::format("{} of {} faces were inside out and were turned", turned, out.clean.mesh.faces.size()));
   out.normalization = normalization_of(out.clean.mesh);
   out.mesh = normalised(out.clean.mesh, out.normalization);
 

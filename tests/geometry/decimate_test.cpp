@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "geometry/mesh_makers.h"
@@ -122,6 +123,20 @@ TEST(Decimate, ends_where_the_cheapest_edge_cannot_be_merged) {
   const VertexId loose = book.positions.push_back({2, 2, 2});  // a tiny triangle: its edges are the cheapest and its last
   book.faces.push_back({loose, book.positions.push_back({2.001f, 2, 2}), book.positions.push_back({2, 2.001f, 2})});
   EXPECT_LE(decimate(book, {.target_vertices = 60}).mesh.positions.size(), 70u);
+}
+
+TEST(Decimate, the_hub_of_a_fan_stays_where_it_is_and_the_fan_reaches_the_target) {
+  constexpr std::uint32_t kSpokes = 5000;
+  TriangleMesh fan;
+  fan.positions.push_back(Vec3f::Zero());
+  for (std::uint32_t k = 0; k < kSpokes; ++k) {
+    const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(k) / static_cast<float>(kSpokes);
+    fan.positions.push_back({std::cos(angle), std::sin(angle), 0});
+    fan.faces.push_back({VertexId{0}, VertexId{1 + k}, VertexId{1 + (k + 1) % kSpokes}});
+  }
+  const auto [mesh, from] = decimate(fan, {.target_vertices = 100});
+  EXPECT_EQ(mesh.positions.size(), 100u);
+  EXPECT_VEC3_NEAR(mesh.positions[from[VertexId{0}]], Vec3f::Zero(), 1e-3f);
 }
 
 TEST(Decimate, does_not_depend_on_the_unit) {

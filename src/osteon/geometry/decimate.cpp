@@ -17,8 +17,10 @@ using Vec3d = Eigen::Vector3d;
 using Face = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kGrain = 1 << 12;
-constexpr double kBorderWeight = 1.0;   // planes along open borders, per squared length of the edge
-constexpr double kLeastTurn = 0.2;      // cosine between a face's normals before and after
+constexpr double kBorderWeight = 1.0;  // planes along open borders, per squared length of the edge
+constexpr double kLeastTurn = 0.2;     // cosine between a face's normals before and after
+constexpr std::size_t kMostFaces =
+    1024;  // of a vertex that merges: the hub of a fan has as many edges, and each would go through all of them
 constexpr double kLeastQuality = 0.05;  // twice the area by the squared longest side: 0.87 for an equilateral triangle
 
 // Rounds take the cheapest edges, so many per vertex (a mesh has three). Far from the target speed counts, near it the order of costs.
@@ -184,6 +186,7 @@ class Decimation {
 
   bool try_merge(const Edge& e) {
     if (touched_[e.a] || touched_[e.b]) return false;
+    if (std::max(rings_.of(e.a).size(), rings_.of(e.b).size()) > kMostFaces) return false;
     if (tears(e)) return false;
     const Quadric q = quadrics_[e.a] + quadrics_[e.b];
     const Vec3d position = merged_position(e, q);

@@ -65,5 +65,12 @@ TEST(MirrorPairs, stay_in_their_part_where_parts_touch) {
   for (VertexId v : mesh.positions.ids()) EXPECT_EQ(parts.of[v], parts.of[pairs->partner[v]]);
 }
 
+TEST(MirrorPairs, are_not_looked_for_where_all_lies_in_a_few_cells_beside_something_far_away) {
+  TriangleMesh mesh = shapes::icosphere(5, 1e-4f);
+  mesh.positions[VertexId{0}] = {0, 1, 0};
+  for (int k = 0; k < 2; ++k) mesh = shapes::merged(mesh, mesh);  // 40 thousand vertices
+  EXPECT_EQ(mirror_pairs(mesh, {Vec3f::UnitX(), 0.0f}), std::nullopt);
+}
+
 }  // namespace
 }  // namespace osteon::geometry

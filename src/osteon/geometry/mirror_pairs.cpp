@@ -20,6 +20,8 @@ constexpr std::size_t kSamples = 4096;                    // vertices to fit it 
 constexpr float kNearlyX = 0.9999f;                       // of the fitted normal: then x = 0 is tried, too
 constexpr float kRounding = 1e-6f;
 constexpr std::size_t kGrain = 256;
+// More comparisons are not worth it: beside something far away (a stray vertex) the whole character may lie in a few cells.
+constexpr std::size_t kMostComparisons = 100'000'000;
 
 // Vertices by the cell that they lie in.
 class Cells {
@@ -27,6 +29,16 @@ class Cells {
   Cells(const PerVertex<Vec3f>& positions, float size) : size_(size) {
     for (VertexId v : positions.ids()) items_.emplace_back(key(cell(positions[v])), v);
     std::ranges::sort(items_);
+  }
+
+  // About how many vertices are visited in all if every vertex looks around itself.
+  std::size_t comparisons() const {
+    std::size_t sum = 0;
+    for (std::size_t begin = 0, end = 0; begin < items_.size(); begin = end) {
+      while (end < items_.size() && items_[end].first == items_[begin].first) ++end;
+      sum += (end - begin) * (end - begin);
+    }
+    return sum;
   }
 
   // Calls visit(v) for every vertex in the cells within `reach` of p, and for some more.
@@ -62,10 +74,11 @@ class Matcher {
  public:
   explicit Matcher(const TriangleMesh& mesh) : positions_(mesh.positions), normals_(vertex_normals(mesh)) {}
 
-  // Of every stride-th vertex.
+  // Of every stride-th vertex; none where the vertices lie too close together to look.
   Partners partners(const Plane& plane, float reach, std::size_t stride) const {
     const Cells cells(positions_, 4.0f * reach);
     Partners out(positions_.size());
+    if (cells.comparisons() / stride > kMostComparisons) return out;
     parallel_for((positions_.size() + stride - 1) / stride, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto v = static_cast<VertexId>(i * stride);

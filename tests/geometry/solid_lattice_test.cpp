@@ -72,5 +72,13 @@ TEST(SolidLattice, a_full_box_gets_larger_cells_when_it_may_have_few) {
   EXPECT_LT(solid_lattice(shapes::box({1, 1, 1}), 256, 300000).nodes(), 400000u);
 }
 
+TEST(SolidLattice, a_point_far_beyond_the_grid_is_beyond_it) {
+  const SolidLattice lattice = solid_lattice(shapes::icosphere(3, 1.0f), 20);
+  for (const float far : {3.0f, 1e9f, 1e38f})
+    for (const Vec3f& direction : {Vec3f(1, 0, 0), Vec3f(0, -1, 0), Vec3f(-1, 1, 1)})
+      EXPECT_EQ(lattice.node_at(lattice.cell_at(far * direction)), SolidLattice::kNone);
+  EXPECT_NE(lattice.node_at(lattice.cell_at(Vec3f::Zero())), SolidLattice::kNone);
+}
+
 }  // namespace
 }  // namespace osteon::geometry

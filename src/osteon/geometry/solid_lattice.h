@@ -28,7 +28,10 @@ struct SolidLattice {
   std::uint32_t index(const Eigen::Array3i& at) const {
     return static_cast<std::uint32_t>((at.x() * size.y() + at.y()) * size.z() + at.z());
   }
-  Eigen::Array3i cell_at(const Vec3f& p) const { return ((p - origin) / cell).array().floor().cast<int>(); }
+  // Of a point beyond the grid, however far, one in that direction beyond the grid.
+  Eigen::Array3i cell_at(const Vec3f& p) const {
+    return ((p - origin) / cell).array().floor().max(-1.0f).min(size.cast<float>()).cast<int>();
+  }
   // The node of the cell; kNone beyond the grid.
   std::uint32_t node_at(const Eigen::Array3i& at) const { return (at >= 0).all() && (at < size).all() ? node_of[index(at)] : kNone; }
 };

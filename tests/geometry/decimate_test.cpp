@@ -139,6 +139,17 @@ TEST(Decimate, the_hub_of_a_fan_stays_where_it_is_and_the_fan_reaches_the_target
   EXPECT_VEC3_NEAR(mesh.positions[from[VertexId{0}]], Vec3f::Zero(), 1e-3f);
 }
 
+// Stretched a million times, nearly every merge would fold a face.
+TEST(Decimate, folds_faces_only_where_more_vertices_would_be_left_than_may_be) {
+  const TriangleMesh needle = shapes::transformed(shapes::icosphere(5), Transform(Eigen::Scaling(1e6f, 1.0f, 1.0f)));
+  const std::size_t unfolded = decimate(needle, {.target_vertices = 100}).mesh.positions.size();
+  ASSERT_GT(unfolded, 600u);
+  EXPECT_EQ(decimate(needle, {.target_vertices = 100, .most_vertices = unfolded}).mesh.positions.size(), unfolded);
+  const auto [mesh, from] = decimate(needle, {.target_vertices = 100, .most_vertices = 500});
+  EXPECT_EQ(mesh.positions.size(), 500u);
+  EXPECT_EQ(connected_components(mesh).count, 1u);
+}
+
 TEST(Decimate, does_not_depend_on_the_unit) {
   for (const float scale : {1024.0f, 1.0f / 1024}) {  // exact in floats
     const TriangleMesh sphere = shapes::icosphere(4);

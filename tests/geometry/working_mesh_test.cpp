@@ -173,6 +173,22 @@ TEST(CarryBack, does_not_jump_across_a_thin_gap) {
   }
 }
 
+// Around the hub of a fan nobody walks, yet all its vertices find where they are.
+TEST(CarryBack, of_a_fan_each_vertex_gets_a_point_near_it) {
+  constexpr std::uint32_t kSpokes = 700;
+  TriangleMesh fan;
+  fan.positions.push_back({0, 0, 0.2f});
+  for (std::uint32_t k = 0; k < kSpokes; ++k) {
+    const float angle = 6.2831853f * static_cast<float>(k) / static_cast<float>(kSpokes);
+    fan.positions.push_back({std::cos(angle), std::sin(angle), 0});
+    fan.faces.push_back({VertexId{0}, VertexId{1 + k}, VertexId{1 + (k + 1) % kSpokes}});
+  }
+  const WorkingMesh working = make_working_mesh(fan);
+  const PerVertex<SurfacePoint> points = carry_back(working);
+  for (VertexId v : fan.positions.ids())
+    EXPECT_VEC3_NEAR(position_of(points[v], working), working.normalization.apply(fan.positions[v]), 0.01f);
+}
+
 TEST(CarryBack, both_sides_of_a_seam_and_unused_vertices_get_a_point) {
   TriangleMesh mesh = test::unshared(shapes::icosphere(4));
   const VertexId unused = mesh.positions.push_back(Vec3f(0, 2, 0));

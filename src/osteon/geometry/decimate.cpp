@@ -17,11 +17,11 @@ using Vec3d = Eigen::Vector3d;
 using Face = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kGrain = 1 << 12;
-constexpr double kBorderWeight = 1.0;  // planes along open borders, per squared length of the edge
-constexpr double kLeastTurn = 0.2;     // cosine between a face's normals before and after
-constexpr std::size_t kMostFaces =
-    1024;  // of a vertex that merges: the hub of a fan has as many edges, and each would go through all of them
+constexpr double kBorderWeight = 1.0;   // planes along open borders, per squared length of the edge
+constexpr double kLeastTurn = 0.2;      // cosine between a face's normals before and after
 constexpr double kLeastQuality = 0.05;  // twice the area by the squared longest side: 0.87 for an equilateral triangle
+// Of a vertex that merges: the hub of a fan has as many edges, and each would go through all of them.
+constexpr std::size_t kMostFaces = 1024;
 
 // Rounds take the cheapest edges, so many per vertex (a mesh has three). Far from the target speed counts, near it the order of costs.
 constexpr std::size_t kFar = 8;
@@ -71,6 +71,9 @@ class Decimation {
   }
 
   std::size_t edges() const { return edges_.size(); }
+
+  void allow_folds() { may_fold_ = true; }
+  bool may_fold() const { return may_fold_; }
 
   DecimatedMesh result() const {
     DecimatedMesh out;
@@ -190,7 +193,7 @@ class Decimation {
     if (tears(e)) return false;
     const Quadric q = quadrics_[e.a] + quadrics_[e.b];
     const Vec3d position = merged_position(e, q);
-    if (folds(e.a, e.b, position) || folds(e.b, e.a, position)) return false;
+    if (!may_fold_ && (folds(e.a, e.b, position) || folds(e.b, e.a, position))) return false;
     merge(e, q, position);
     return true;
   }
@@ -276,6 +279,7 @@ class Decimation {
   Buckets<std::uint32_t> rings_;            // faces of each vertex
   std::vector<Edge> edges_;
   std::vector<std::uint8_t> touched_;  // merged in this round
+  bool may_fold_ = false;
 };
 
 }  // namespace
@@ -283,14 +287,19 @@ class Decimation {
 DecimatedMesh decimate(const TriangleMesh& mesh, const DecimateOptions& options) {
   Decimation work(mesh, options);
   double share = 0;  // candidates per vertex
-  while (work.vertices() > options.target_vertices) {
-    const bool far = work.vertices() > kFar * options.target_vertices;
+  std::size_t target = options.target_vertices;
+  while (work.vertices() > target) {
+    const bool far = work.vertices() > kFar * target;
     const double usual = far ? kShareFar : kShareNear;
     share = std::max(share, usual);
     const double wished = share * static_cast<double>(work.vertices());
     const auto candidates = static_cast<std::size_t>(std::min(wished, static_cast<double>(work.edges()))) + 1;
-    const std::size_t merged = work.round(candidates, far ? Order::by_place : Order::by_cost, work.vertices() - options.target_vertices);
-    if (merged == 0 && candidates >= work.edges()) break;  // every edge that is left holds the shape
+    const std::size_t merged = work.round(candidates, far ? Order::by_place : Order::by_cost, work.vertices() - target);
+    if (merged == 0 && candidates >= work.edges()) {  // every edge that is left holds the shape
+      if (work.may_fold()) break;
+      work.allow_folds();
+      target = options.most_vertices;
+    }
     share = merged * 10 < candidates ? 2 * share : usual;  // most of the cheapest cannot be merged: look further
   }
   return work.result();

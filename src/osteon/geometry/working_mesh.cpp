@@ -21,6 +21,7 @@ namespace osteon::geometry {
 namespace {
 
 constexpr std::size_t kVerticesPerPiece = 4;  // what the least that can be left of a closed piece takes
+constexpr std::size_t kLargestRing = 512;     // faces of a vertex that are looked at one by one
 constexpr float kLongestEdge = 3;             // of the mean spacing of the working mesh's vertices; longer edges are split first
 
 TriangleMesh normalised(TriangleMesh mesh, const Normalization& normalization) {
@@ -79,10 +80,12 @@ class Surface {
     return surface_point(closest.face, closest.barycentric);
   }
 
-  // The nearest point in the faces around `start`, then around the face found, until that brings nothing more.
+  // The nearest point in the faces around `start`, then around the face found, until that brings nothing more. Hubs of fans are not walked
+  // around: that would be all faces for each vertex.
   SurfacePoint walk(const Vec3f& p, const Vec3f& normal, VertexId start) const {
     Found best;
     look_around(p, normal, start, best);
+    if (!best.face) return nearest(p);
     for (std::optional<FaceId> from; from != best.face;) {
       from = best.face;
       for (VertexId corner : mesh_.faces[*from]) look_around(p, normal, corner, best);
@@ -103,6 +106,7 @@ class Surface {
 
   // Faces that look the other way count as twice as far: on thin parts (ears, fins, blades) each side then finds its own.
   void look_around(const Vec3f& p, const Vec3f& normal, VertexId v, Found& best) const {
+    if (rings_.of(index(v)).size() > kLargestRing) return;
     for (FaceId f : rings_.of(index(v))) {
       const auto [a, b, c] = mesh_.faces[f];
       const Vec3f weights = closest_barycentric(p, mesh_.positions[a], mesh_.positions[b], mesh_.positions[c]);
@@ -142,7 +146,7 @@ WorkingMesh make_working_mesh(const TriangleMesh& original, const WorkingMeshOpt
   const std::size_t target = options.target_vertices + kVerticesPerPiece * (pieces - 1);
   out.mesh = split_long_edges(std::move(out.mesh), target);
   if (out.mesh.positions.size() > target) {
-    DecimatedMesh reduced = decimate(out.mesh, {.target_vertices = target});
+    DecimatedMesh reduced = decimate(out.mesh, {.target_vertices = target, .most_vertices = options.max_vertices});
     out.mesh = std::move(reduced.mesh);
     for (auto& v : out.from_clean)
       if (v) v = reduced.from_input[*v];

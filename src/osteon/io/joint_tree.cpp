@@ -101,7 +101,8 @@ class TreeBuilder {
   Vec3f position(std::size_t node) {
     const Eigen::Vector3d p = scene_.nodes[node].world.translation();
     if (!(p.cwiseAbs().maxCoeff() <= static_cast<double>(kLargestCoordinate)))
-      throw Error("joint '{}' is at ({}, {}, {})", scene_.nodes[node].name, p.x(), p.y(), p.z());
+      throw Error("joint '{}' is at ({}, {}, {}), expected at most {:g} from the origin", scene_.nodes[node].name, p.x(), p.y(), p.z(),
+                  kLargestCoordinate);
     return p.cast<float>();
   }
 

@@ -173,6 +173,8 @@ struct Corpus {
 Corpus corpus_of(const Arguments& a, Task task) {
   if (!a.shares.empty() && a.shares.size() != a.data.size())
     throw Error("--shares: found {} numbers for {} files of --data, expected one for each", a.shares.size(), a.data.size());
+  const auto counts = [](double share) { return share > 0.0 && std::isfinite(share); };
+  if (!a.shares.empty() && std::ranges::none_of(a.shares, counts)) throw Error("--shares: found no number above 0, expected one at least");
   Corpus corpus;
   for (std::size_t i = 0; i < a.data.size(); ++i) {
     std::vector<dataset::Example> of_file = examples_of(a.data[i], task, a.groups, a.options.seed);

@@ -86,6 +86,14 @@ TEST(TrainingBatch, changes_that_are_off_draw_no_random_numbers) {
   EXPECT_EQ(training_batch(one, {}, {}, random).inputs.mesh.positions, batch_of(Parts::joints, {}, 3).inputs.mesh.positions);
 }
 
+TEST(Draw, gives_no_more_than_there_is_weight_for) {
+  Random random(1);
+  const std::vector<double> two{0.0, 0.3, 0.0, 0.7}, none{0.0, 0.0};
+  EXPECT_THAT(draw(two, 3, random), testing::UnorderedElementsAre(1, 3));
+  EXPECT_THAT(draw(two, 1, random), testing::SizeIs(1));
+  EXPECT_THAT(draw(none, 2, random), testing::IsEmpty());
+}
+
 // Of poses alone, without random ones: the bend between the bones is that of one of the two poses.
 TEST(TrainingBatch, from_motion_stands_in_the_characters_own_poses) {
   AugmentOptions options = AugmentOptions::none();

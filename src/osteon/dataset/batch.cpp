@@ -247,8 +247,9 @@ std::vector<double> sampling_weights(std::span<const Example> examples) {
 
 std::vector<std::size_t> draw(std::span<const double> weights, std::size_t count, Random& random) {
   std::vector<double> left(weights.begin(), weights.end());
+  const auto possible = static_cast<std::size_t>(std::ranges::count_if(left, [](double weight) { return weight > 0.0; }));
   std::vector<std::size_t> drawn;
-  while (drawn.size() < std::min(count, left.size())) {
+  while (drawn.size() < std::min(count, possible)) {
     double at = random.uniform() * std::accumulate(left.begin(), left.end(), 0.0);
     std::size_t i = 0;
     while (i + 1 < left.size() && (left[i] == 0.0 || at >= left[i])) at -= left[i++];

@@ -37,7 +37,7 @@ std::vector<Example> examples_of(std::vector<PreparedCharacter> characters, Part
 // How often to draw each: groups of alike characters count with the root of their size, then categories with the root of theirs. Sum 1.
 std::vector<double> sampling_weights(std::span<const Example> examples);
 
-// `count` different indices, drawn with `weights`; count is cut to their number.
+// `count` different indices, drawn with `weights` (finite, not negative); count is cut to the number of those that are not 0.
 std::vector<std::size_t> draw(std::span<const double> weights, std::size_t count, Random& random);
 
 struct BatchTargets {

@@ -37,8 +37,23 @@ TEST(Manifest, counts_the_characters_of_each_source) {
 
 TEST(Manifest, names_the_line_that_is_broken) {
   const test::TemporaryFolder folder;
-  write(folder / "manifest.jsonl", line("a", "train") + "{\"id\": 3}\n");
-  EXPECT_THAT(test::error_of([&] { read_manifest(folder.path(), "train"); }), testing::HasSubstr("manifest.jsonl: line 2: "));
+  const auto error_with = [&](const std::string& second) {
+    write(folder / "manifest.jsonl", line("a", "train") + second);
+    return test::error_of([&] { read_manifest(folder.path(), "train"); });
+  };
+  EXPECT_THAT(error_with("nonsense\n"), testing::HasSubstr("manifest.jsonl: line 2: "));
+  EXPECT_THAT(error_with("{\"category\": 3}\n"), testing::HasSubstr("manifest.jsonl: line 2: \"category\": found 3, expected a text"));
+  EXPECT_THAT(error_with("{\"id\": \"b\"}\n"), testing::HasSubstr("manifest.jsonl: line 2: has no \"category\""));
+  EXPECT_THAT(error_with("[]\n"), testing::HasSubstr("manifest.jsonl: line 2: has no \"category\""));
+  EXPECT_THAT(error_with(line("a", "val")), testing::HasSubstr("manifest.jsonl: line 2: the id 'a' is that of line 1 too"));
+}
+
+TEST(Manifest, may_have_blank_lines_and_those_of_windows) {
+  const test::TemporaryFolder folder;
+  std::string text = line("a", "train");
+  text.insert(text.size() - 1, "\r");
+  write(folder / "manifest.jsonl", text + "\r\n  \n");
+  EXPECT_EQ(read_manifest(folder.path(), "train").size(), 1u);
 }
 
 TEST(Manifest, names_the_split_that_is_not_there) {

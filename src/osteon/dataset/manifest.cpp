@@ -13,7 +13,11 @@ namespace {
 
 ManifestEntry parse_line(const std::string& line, const std::filesystem::path& folder) {
   const auto json = nlohmann::json::parse(line);
-  const auto text = [&](const char* key) { return json.at(key).get<std::string>(); };
+  const auto text = [&](const char* key) {
+    if (!json.is_object() || !json.contains(key)) throw Error("has no \"{}\", expected one", key);
+    if (!json[key].is_string()) throw Error("\"{}\": found {}, expected a text", key, json[key].dump());
+    return json[key].get<std::string>();
+  };
   const std::string category = text("category");
   return {{text("id"), text("group"), category.substr(0, category.find('/'))},
           folder / text("file"),
@@ -30,13 +34,16 @@ std::vector<ManifestEntry> read_manifest(const std::filesystem::path& folder, co
   std::ifstream file(path);
   if (!file) throw Error("{}: cannot be opened", path.string());
   std::vector<ManifestEntry> entries;
+  std::map<std::string, int> lines;  // of the ids
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
-    if (line.empty()) continue;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     try {
       ManifestEntry entry = parse_line(line, folder);
+      const auto [first, is_new] = lines.emplace(entry.info.id, number);
+      if (!is_new) throw Error("the id '{}' is that of line {} too, expected each once", entry.info.id, first->second);
       if (split.empty() || entry.split == split) entries.push_back(std::move(entry));
-    } catch (const nlohmann::json::exception& e) {
+    } catch (const std::exception& e) {
       throw Error("{}: line {}: {}", path.string(), number, e.what());
     }
   }

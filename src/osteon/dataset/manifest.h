@@ -17,8 +17,8 @@ struct ManifestEntry {
   std::string licence, author, source;
 };
 
-// The entries of `split` (of all splits where it is empty), in the file's order. Throws Error naming the line that is not as expected,
-// or the split that has no characters.
+// The entries of `split` (of all splits where it is empty), in the file's order. Throws Error naming the line that is not as expected
+// or has the id of an earlier one, or the split that has no characters.
 std::vector<ManifestEntry> read_manifest(const std::filesystem::path& folder, const std::string& split);
 
 // Where characters come from, for the weights that learn from them: a JSON list of {licence, author, source, characters (how many)}, by

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "osteon/base/error.h"
@@ -15,7 +17,7 @@ namespace osteon::app {
 struct Output {
   std::string option;  // that asks for it
   std::filesystem::path file;
-  std::string extension;  // of files of its kind, in small letters
+  std::string extension;  // of files of its kind, in small letters; empty: any
 };
 
 inline bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -30,13 +32,25 @@ inline void check_outputs(std::vector<std::filesystem::path> inputs, const std::
   for (const auto& [option, file, kind] : outputs) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != kind) throw Error("{} {}: expected a name that ends in {}", option, file.string(), kind);
+    if (!kind.empty() && extension != kind) throw Error("{} {}: expected a name that ends in {}", option, file.string(), kind);
+    if (std::filesystem::is_directory(file)) throw Error("{} {}: is a folder, expected a file", option, file.string());
     if (const auto folder = file.parent_path(); !folder.empty() && !std::filesystem::is_directory(folder))
       throw Error("{} {}: there is no folder {}", option, file.string(), folder.string());
     for (const auto& other : inputs)
       if (is_same_file(file, other))
         throw Error("{} {}: {} would be overwritten; choose another name", option, file.string(), other.string());
     inputs.push_back(file);
+  }
+}
+
+// The same for commands that write after hours: also throws Error where no file can be made beside an output, as it is then written aside
+// first.
+inline void check_late_outputs(std::vector<std::filesystem::path> inputs, const std::vector<Output>& outputs) {
+  check_outputs(std::move(inputs), outputs);
+  for (const auto& [option, file, kind] : outputs) {
+    const std::filesystem::path aside = file.string() + ".tmp";
+    if (!std::ofstream(aside)) throw Error("{} {}: cannot be written", option, file.string());
+    std::filesystem::remove(aside);
   }
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <c10/util/Exception.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "../kept_memory.h"
 #include "curves_command.h"
@@ -39,7 +42,13 @@ int main(int argc, char** argv) {
     return bad_input;
   } catch (const osteon::Cancelled&) {
     return cancelled;
-  } catch (const std::exception& e) {  // LibTorch's own, such as a GPU without memory left
+  } catch (const std::filesystem::filesystem_error& e) {
+    std::fprintf(stderr, "error: %s\n", e.what());
+    return bad_input;
+  } catch (const c10::Error& e) {  // LibTorch's own, such as a GPU without memory left
+    std::fprintf(stderr, "error: %s\n", e.what_without_backtrace());
+    return failed;
+  } catch (const std::exception& e) {
     std::fprintf(stderr, "error: %s\n", e.what());
     return failed;
   }

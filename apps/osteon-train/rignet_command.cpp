@@ -11,8 +11,11 @@
 #include <set>
 
 #include "../interrupt.h"
+#include "../numbers.h"
 #include "../outputs.h"
+#include "device.h"
 #include "osteon/base/parallel.h"
+#include "osteon/base/progress.h"
 #include "osteon/base/random.h"
 #include "osteon/dataset/pack.h"
 #include "osteon/train/trainer.h"
@@ -46,73 +49,89 @@ void add_common_options(CLI::App& command, Arguments& a) {
       ->required()
       ->check(CLI::ExistingFile);
   command.add_option("--shares", a.shares, "How much of what is shown is of each file of --data (default: all files drawn from as one)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command.add_option("--groups", a.groups, "Learn from this share of each file's groups alone, to see what more data brings")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--val", a.validation, "Validation characters")->check(CLI::ExistingFile);
   command.add_option("--out", a.out, "Where the weights go (safetensors)")->required();
   command.add_option("--init", a.init, "Weights to start from")->check(CLI::ExistingFile);
-  command.add_option("--minutes", a.options.minutes, "Train for this long")->check(CLI::NonNegativeNumber);
-  command.add_option("--steps", a.options.steps, "Train for this many steps")->check(CLI::NonNegativeNumber);
-  command.add_option("--batch", a.options.batch_size, "Characters a step")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--minutes", a.options.minutes, "Train for this long")->check(not_negative());
+  command.add_option("--steps", a.options.steps, "Train for this many steps")->check(not_negative());
+  command.add_option("--batch", a.options.batch_size, "Characters a step")->check(above_zero())->capture_default_str();
   command
       .add_option("--echo", a.options.echo,
                   "In how many steps each changed character is shown, placed anew; for where steps wait for batches (divides --batch)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
-  command.add_option("--lr", a.options.learning_rate, "Largest learning rate")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--weight-decay", a.options.adam.weight_decay, "Decoupled weight decay")->capture_default_str();
-  command.add_option("--clip", a.options.adam.largest_norm, "Largest norm of the gradient (0: any)")->capture_default_str();
-  command.add_option("--warm-up", a.options.warm_up, "Share of the run in which the learning rate rises")->capture_default_str();
-  command.add_option("--momentum", a.options.task.run.norm.momentum, "Of the normalisations' running figures")->capture_default_str();
+  command.add_option("--lr", a.options.learning_rate, "Largest learning rate")->check(above_zero())->capture_default_str();
+  command.add_option("--weight-decay", a.options.adam.weight_decay, "Decoupled weight decay")->check(not_negative())->capture_default_str();
+  command.add_option("--clip", a.options.adam.largest_norm, "Largest norm of the gradient (0: any)")
+      ->check(not_negative())
+      ->capture_default_str();
+  command.add_option("--warm-up", a.options.warm_up, "Share of the run in which the learning rate rises")
+      ->check(within(0.0, 0.9))
+      ->capture_default_str();
+  command.add_option("--momentum", a.options.task.run.norm.momentum, "Of the normalisations' running figures")
+      ->check(within(0.0, 1.0))
+      ->capture_default_str();
   command.add_option("--largest-stretch", a.options.task.run.norm.largest_stretch, "Of batch renormalisation (1: plain batches)")
-      ->check(CLI::Range(1.0, 100.0))
+      ->check(within(1.0, 100.0))
       ->capture_default_str();
   command.add_option("--largest-offset", a.options.task.run.norm.largest_offset, "Of batch renormalisation (0: plain batches)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
-  command.add_option("--neighbours", a.options.task.batch.neighbours, "Geodesic neighbours of a vertex")->capture_default_str();
+  command.add_option("--neighbours", a.options.task.batch.neighbours, "Geodesic neighbours of a vertex")
+      ->check(not_negative())
+      ->capture_default_str();
   command.add_flag("--no-augmentation", a.no_augmentation, "Show every character as it is");
   command.add_flag("--no-placement", a.no_placement, "Neither mirror, turn nor stretch the whole character");
   auto& articulate = a.options.augment.articulate;
   command.add_option("--articulate", articulate.probability, "How often a character is bent and scaled through its rig")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
-  command.add_option("--bend", articulate.largest_bend, "Largest standard deviation of joint angles, radians")->capture_default_str();
+  command.add_option("--bend", articulate.largest_bend, "Largest standard deviation of joint angles, radians")
+      ->check(not_negative())
+      ->capture_default_str();
   command.add_option("--reduce", a.options.augment.reduce, "How often a mesh is reduced (not for skin and bind)")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--fold", a.options.augment.fold, "How often a character gets a coarser rig")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
-  command.add_option("--proportion", articulate.proportion, "Standard deviation of the logarithm of a part's size")->capture_default_str();
+  command.add_option("--proportion", articulate.proportion, "Standard deviation of the logarithm of a part's size")
+      ->check(not_negative())
+      ->capture_default_str();
   command
       .add_option("--from-motion", articulate.from_motion,
                   "Share of those bent that stand in one of their poses of `dataset prepare --motions`")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--drop", a.options.augment.drop, "How often a character loses some of its accessories")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--flip", a.options.augment.flip, "How often edges of the mesh are flipped")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
-  command.add_option("--seed", a.options.seed)->capture_default_str();
+  command.add_option("--seed", a.options.seed)->check(not_negative())->capture_default_str();
   command.add_option("--device", a.device, "cpu, cuda or cuda:N")->capture_default_str();
   command.add_option("--threads", a.threads, "CPU threads (default: all cores)")->check(CLI::Range(1, 1024));
-  command.add_option("--checkpoint", a.options.checkpoint, "Written every two minutes, at the end and on Ctrl-C");
-  command.add_flag("--resume", a.resume, "Go on from the checkpoint");
+  auto* checkpoint = command.add_option("--checkpoint", a.options.checkpoint, "Written every two minutes, at the end and on Ctrl-C");
+  command.add_flag("--resume", a.resume, "Go on from the checkpoint")->needs(checkpoint);
   command.add_option("--log", a.log, "Figures as JSON lines, appended");
   command.add_flag("--profile", a.profile, "Say at the end where the time went");
-  command.add_option("--report-seconds", a.options.report_seconds)->capture_default_str();
-  command.add_option("--validate-seconds", a.options.validate_seconds)->capture_default_str();
+  command.add_option("--report-seconds", a.options.report_seconds)->check(not_negative())->capture_default_str();
+  command.add_option("--validate-seconds", a.options.validate_seconds)->check(not_negative())->capture_default_str();
 }
 
 void add_votes_options(CLI::App& command, Arguments& a) {
   a.options.task.attention_weight = 0.02;
-  command.add_option("--density-weight", a.options.task.density_weight, "Of the votes' density at the joints")->capture_default_str();
-  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
+  command.add_option("--density-weight", a.options.task.density_weight, "Of the votes' density at the joints")
+      ->check(not_negative())
+      ->capture_default_str();
+  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")
+      ->check(not_negative())
+      ->capture_default_str();
 }
 
 void add_bones_options(CLI::App& command, Arguments& a) {
@@ -122,9 +141,10 @@ void add_bones_options(CLI::App& command, Arguments& a) {
 
 void add_neuroskinning_options(CLI::App& command, Arguments& a) {
   command.add_option("--difference-weight", a.options.task.difference_weight, "Of the weights' L1 distance, against their cross-entropy")
+      ->check(not_negative())
       ->capture_default_str();
   command.add_option("--nameless", a.options.augment.nameless, "How often the joints' names are not read")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0.0, 1.0))
       ->capture_default_str();
 }
 
@@ -133,15 +153,17 @@ void add_combined_options(CLI::App& command, Arguments& a) {
       command.add_flag("--combined", a.combined, "Train displacement, attention and bandwidth together, through the mean shift");
   command.add_option("--attention", a.attention, "Attention weights to start from")->check(CLI::ExistingFile)->needs(combined);
   command.add_option("--attention-out", a.attention_out, "Where the attention's weights go")->needs(combined);
-  command.add_option("--bandwidth", a.bandwidth, "Bandwidth to start from")
-      ->check(CLI::PositiveNumber)
-      ->needs(combined)
-      ->capture_default_str();
+  command.add_option("--bandwidth", a.bandwidth, "Bandwidth to start from")->check(above_zero())->needs(combined)->capture_default_str();
   command.add_option("--vertex-weight", a.options.task.vertex_weight, "Of the displaced vertices' loss where all is trained together")
       ->needs(combined)
+      ->check(not_negative())
       ->capture_default_str();
-  command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")->capture_default_str();
-  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")->capture_default_str();
+  command.add_option("--collapse-weight", a.options.task.collapse_weight, "Of the collapsed points' loss")
+      ->check(not_negative())
+      ->capture_default_str();
+  command.add_option("--attention-weight", a.options.task.attention_weight, "Of the attention's own loss")
+      ->check(not_negative())
+      ->capture_default_str();
 }
 
 // Only characters of a share of the groups, drawn by the seed; at least one. A character without a group is one by itself.
@@ -243,7 +265,11 @@ void check(const Arguments& a) {
     if (!file->empty()) inputs.push_back(*file);
   std::vector<Output> outputs{{"--out", a.out, ".safetensors"}};
   if (!a.attention_out.empty()) outputs.push_back({"--attention-out", a.attention_out, ".safetensors"});
-  check_outputs(inputs, outputs);
+  if (!a.options.checkpoint.empty()) outputs.push_back({"--checkpoint", a.options.checkpoint, ""});
+  if (!a.log.empty()) outputs.push_back({"--log", a.log, ""});
+  check_late_outputs(inputs, outputs);
+  if (!a.resume && !a.options.checkpoint.empty() && fs::exists(a.options.checkpoint))
+    throw Error("--checkpoint {}: is there already: go on from it with --resume, or remove it", a.options.checkpoint.string());
 }
 
 void run(const CLI::App& command, Task task, Arguments a) {
@@ -255,9 +281,7 @@ void run(const CLI::App& command, Task task, Arguments a) {
   if (a.combined) task = Task::collapse;
   if (a.no_augmentation) a.options.augment = dataset::AugmentOptions::none();
   if (a.no_placement) a.options.augment.place_nothing();
-  a.options.task.run.device = at::Device(a.device);
-  a.options.task.run.engine = a.options.task.run.device.is_cpu() ? train::Engine::fused : train::Engine::device;
-  if (a.options.task.run.device.is_cuda()) at::globalContext().setAllowTF32CuBLAS(true);  // as exact as bf16 with f32 sums needs to be here
+  choose_device(a.device, a.options.task.run);
   const Corpus corpus = corpus_of(a, task);
   a.options.sampling = corpus.sampling;
   a.options.trained_before = !a.init.empty();
@@ -271,8 +295,12 @@ void run(const CLI::App& command, Task task, Arguments a) {
   TrainingLog log(a.log);
   catch_interrupts();
   const train::TrainResult result = trainer.run(corpus.examples, validation, std::ref(log), [] { return interrupted != 0; });
-  save_weights(command, a, task, trainer.model(), result);
+  if (result.steps > 0) save_weights(command, a, task, trainer.model(), result);
   if (a.profile) print_profile(trainer.profile());
+  if (result.ending == train::Ending::complete) return;
+  std::fprintf(stderr, "\nstopped after %lld steps%s\n", static_cast<long long>(result.steps),
+               a.options.checkpoint.empty() ? "" : "; the same command with --resume goes on");
+  throw Cancelled();
 }
 
 void add_command(CLI::App& app, Task task, const char* name, const char* description) {

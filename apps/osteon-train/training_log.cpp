@@ -23,6 +23,8 @@ std::string text_of(const train::TrainReport& report) {
 
 TrainingLog::TrainingLog(const std::filesystem::path& file, Shown shown) : shown_(shown), terminal_(::isatty(STDERR_FILENO) != 0) {
   if (file.empty()) return;
+  if (const int first = std::ifstream(file).peek(); first != std::char_traits<char>::eof() && first != '{')
+    throw Error("{}: is there already and no log of training; choose another name", file.string());
   file_.open(file, std::ios::app);
   if (!file_) throw Error("{}: cannot be written", file.string());
 }
@@ -35,7 +37,10 @@ void TrainingLog::operator()(const train::TrainReport& report) {
   nlohmann::ordered_json line{
       {"step", report.step}, {"seconds", report.seconds}, {"kind", report.is_validation ? "validation" : "training"}};
   for (const auto& [name, value] : report.figures) line[name] = value;
-  file_ << line.dump() << std::endl;
+  if (!(file_ << line.dump() << std::endl)) {
+    std::fprintf(stderr, "warning: the log cannot be written any more\n");
+    file_.close();
+  }
 }
 
 void print_profile(const train::StepProfile& profile) {

@@ -14,7 +14,7 @@ class TrainingLog {
  public:
   enum class Shown { here_and_in_file, in_file_alone };
 
-  // Appends to `file` where it is not empty. Throws Error when that cannot be opened.
+  // Appends to `file` where it is not empty. Throws Error when that cannot be opened or holds something else.
   explicit TrainingLog(const std::filesystem::path& file, Shown shown = Shown::here_and_in_file);
 
   void operator()(const train::TrainReport& report);

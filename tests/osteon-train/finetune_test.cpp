@@ -1,48 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/train/finetune.h"
 
-#include <sys/wait.h>
-
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "osteon-train/program.h"
 #include "osteon/base/progress.h"
 #include "osteon/infer/rignet.h"
 #include "osteon/io/save.h"
 #include "osteon/synth/character.h"
-#include "support/expect.h"
 
 namespace osteon {
 namespace {
 
 namespace fs = std::filesystem;
+using test::coarse;
+using test::content;
+using test::osteon_train;
+using test::Outcome;
 using testing::AllOf;
 using testing::HasSubstr;
-
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-struct Outcome {
-  int code;
-  std::string out, err;
-};
-
-Outcome osteon_train(const test::TemporaryFolder& folder, const std::string& arguments) {
-  const std::string command = fmt::format("cd {} && OSTEON_MODELS={} {} {} >out.txt 2>err.txt", folder.path().string(),
-                                          OSTEON_MODELS_FOLDER, OSTEON_TRAIN_PROGRAM, arguments);
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder / "out.txt"), content(folder / "err.txt")};
-}
-
-synth::CharacterOptions coarse() {
-  synth::CharacterOptions options;
-  options.cells = 40;
-  return options;
-}
 
 void save(const fs::path& path, Rig rig) {
   io::Asset asset;

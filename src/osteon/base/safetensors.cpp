@@ -89,7 +89,8 @@ template std::vector<std::uint8_t> Array::values() const;
 template <class T>
 Array Array::of(std::span<const T> values, std::vector<std::int64_t> shape) {
   Array array{dtype_of<T>(), std::move(shape), std::vector<std::uint8_t>(values.size_bytes())};
-  if (static_cast<std::size_t>(array.count()) != values.size()) throw Error("{} values do not fill a tensor of {}", values.size(), array.count());
+  if (static_cast<std::size_t>(array.count()) != values.size())
+    throw Error("{} values do not fill a tensor of {}", values.size(), array.count());
   if (!values.empty()) std::memcpy(array.bytes.data(), values.data(), values.size_bytes());
   return array;
 }
@@ -147,7 +148,8 @@ void save_safetensors(const std::filesystem::path& path, const Safetensors& cont
   if (!content.metadata.empty()) header["__metadata__"] = content.metadata;
   std::uint64_t offset = 0;
   for (const auto& [name, array] : content.arrays) {
-    header[name] = {{"dtype", type_info(array.dtype).name}, {"shape", array.shape}, {"data_offsets", {offset, offset + array.bytes.size()}}};
+    header[name] = {
+        {"dtype", type_info(array.dtype).name}, {"shape", array.shape}, {"data_offsets", {offset, offset + array.bytes.size()}}};
     offset += array.bytes.size();
   }
   std::string text = header.dump();
@@ -160,8 +162,12 @@ void save_safetensors(const std::filesystem::path& path, const Safetensors& cont
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     for (const auto& [name, array] : content.arrays)
       out.write(reinterpret_cast<const char*>(array.bytes.data()), static_cast<std::streamsize>(array.bytes.size()));
-    out.flush();
-    if (!out) throw Error("{}: cannot write", aside.string());
+    out.close();
+    if (!out) {
+      std::error_code gone;
+      std::filesystem::remove(aside, gone);
+      throw Error("{}: cannot be written", path.string());
+    }
   }
   std::filesystem::rename(aside, path);
 }
@@ -179,10 +185,10 @@ std::uint16_t float_to_half(float value) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
   const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000u);
   const std::uint32_t magnitude = bits & 0x7fffffffu;
-  if (magnitude > 0x7f800000u) return sign | 0x7e00u;                        // NaN
-  if (magnitude >= 0x477ff000u) return sign | 0x7c00u;                       // rounds to 65520 or more
-  if (magnitude < 0x38800000u) {                                             // below 2^-14: subnormal, let the FPU round
-    const float scaled = std::bit_cast<float>(magnitude) + 0.5f;             // 0.5 has an ulp of 2^-24
+  if (magnitude > 0x7f800000u) return sign | 0x7e00u;             // NaN
+  if (magnitude >= 0x477ff000u) return sign | 0x7c00u;            // rounds to 65520 or more
+  if (magnitude < 0x38800000u) {                                  // below 2^-14: subnormal, let the FPU round
+    const float scaled = std::bit_cast<float>(magnitude) + 0.5f;  // 0.5 has an ulp of 2^-24
     return sign | static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(scaled) - 0x3f000000u);
   }
   const std::uint32_t rounded = magnitude + 0xfffu + (magnitude >> 13 & 1u);  // to nearest, ties to even

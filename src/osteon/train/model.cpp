@@ -38,8 +38,11 @@ at::Tensor from_array(const Array& array) {
 void save_weights(const std::filesystem::path& path, const Parameters& parameters, const std::map<std::string, std::string>& metadata) {
   Safetensors file;
   file.metadata = metadata;
-  for (const auto& [name, value] : parameters)
+  for (const auto& [name, value] : parameters) {
+    if (!value.isfinite().all().item<bool>())
+      throw Error("{}: not written: {} is no longer finite; try a smaller learning rate", path.string(), name);
     file.arrays[name] = value.dim() == 2 ? Array::half(values_of(value), value.sizes().vec()) : to_array(value);
+  }
   save_safetensors(path, file);
 }
 

@@ -24,7 +24,8 @@ std::uint64_t count_of_trained(const Model& model);
 Array to_array(const at::Tensor& values);   // f32
 at::Tensor from_array(const Array& array);  // f32 or f16 -> f32
 
-// Weights as the program uses them: matrices in f16, the rest (biases, normalisations) in f32.
+// Weights as the program uses them: matrices in f16, the rest (biases, normalisations) in f32. Throws Error where one is
+// not finite: the training went astray, and what was there before is worth more.
 void save_weights(const std::filesystem::path& path, const Parameters& parameters, const std::map<std::string, std::string>& metadata);
 
 // Throws Error that lists every name and shape in which the file and the network differ.

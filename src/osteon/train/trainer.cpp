@@ -254,12 +254,16 @@ void Trainer::resume() {
   if (task == file.metadata.end() || task->second != task_name(task_))
     throw Error("{}: task: found {}, expected {}", options_.checkpoint.string(), task == file.metadata.end() ? "none" : task->second,
                 task_name(task_));
-  step_ = std::stoll(file.metadata.at("step"));
-  seconds_ = std::stod(file.metadata.at("seconds"));
-  set(model_, model_of(file, model_, ""));
-  if (const auto best = file.metadata.find("best"); options_.keep_best && best != file.metadata.end())
-    best_ = Best{nlohmann::json::parse(best->second).get<std::map<std::string, double>>(), model_of(file, model_, best_prefix)};
-  adam_.load(file, options_.task.run.device);
+  try {
+    step_ = std::stoll(file.metadata.at("step"));
+    seconds_ = std::stod(file.metadata.at("seconds"));
+    set(model_, model_of(file, model_, ""));
+    if (const auto best = file.metadata.find("best"); options_.keep_best && best != file.metadata.end())
+      best_ = Best{nlohmann::json::parse(best->second).get<std::map<std::string, double>>(), model_of(file, model_, best_prefix)};
+    adam_.load(file, options_.task.run.device);
+  } catch (const std::exception& e) {
+    throw Error("{}: not a checkpoint of this network: {}", options_.checkpoint.string(), e.what());
+  }
 }
 
 }  // namespace osteon::train

@@ -61,7 +61,7 @@ class Trainer {
  public:
   Trainer(Task task, const TrainOptions& options, Model model);
 
-  // Continues from options.checkpoint. Throws Error when it is of another task.
+  // Continues from options.checkpoint. Throws Error when it is of another task or no checkpoint.
   void resume();
 
   // Trains until the end, or until `stop` says so; writes a checkpoint then. Pre: `train` is not empty.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <c10/util/Exception.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 
@@ -13,6 +15,15 @@
 #include "rignet_command.h"
 
 namespace {
+
+// OpenMP's threads, which LibTorch computes with, turn in circles while they wait, and take the cores from those that make the next batches
+// and from other programs: a step took up to ten times as long. OpenMP reads what it should do when a program is loaded, so this begins
+// anew.
+void let_waiting_threads_sleep(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY")) return;
+  ::setenv("OMP_WAIT_POLICY", "passive", 1);
+  ::execv("/proc/self/exe", argv);  // where that fails, all works, only slower
+}
 
 enum ExitCode { done = 0, failed = 1, bad_input = 2, cancelled = 130 };
 
@@ -34,6 +45,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  let_waiting_threads_sleep(argv);
   osteon::app::keep_freed_memory();
   try {
     return run(argc, argv);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "osteon/base/error.h"
@@ -16,12 +18,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool is_gltf(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".glb" || extension == ".gltf";
+}
+
 // Each file is a group of its own; copies are found later, by their shape.
 std::vector<dataset::ManifestEntry> every_file(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw Error("{}: not a folder; expected one with rigged characters", folder.string());
   std::vector<dataset::ManifestEntry> entries;
   for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
-    if (!file.is_regular_file() || (file.path().extension() != ".glb" && file.path().extension() != ".gltf")) continue;
+    if (!file.is_regular_file() || !is_gltf(file.path())) continue;
     const std::string id = file.path().lexically_relative(folder).generic_string();
     entries.push_back({{id, id, "own"}, file.path(), "train", "not stated", "not stated", folder.string()});
   }
@@ -37,7 +45,17 @@ std::vector<dataset::ManifestEntry> entries_of(const fs::path& folder) {
   return entries;
 }
 
+// Ids are kept as JSON, which is UTF-8.
+void check_name(const dataset::ManifestEntry& entry) {
+  try {
+    (void)nlohmann::json(entry.info.id).dump();
+  } catch (const nlohmann::json::exception&) {
+    throw Error("{}: its name is not in UTF-8; rename it", entry.file.string());
+  }
+}
+
 dataset::PreparedCharacter prepared(const dataset::ManifestEntry& entry) {
+  check_name(entry);
   io::Asset asset = io::load(entry.file);
   if (!asset.skeleton || !asset.weights) throw Error("{}: has no skeleton with skin weights", entry.file.string());
   return dataset::prepare({std::move(asset.mesh), std::move(*asset.skeleton), std::move(*asset.weights)}, entry.info);

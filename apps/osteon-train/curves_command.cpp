@@ -33,9 +33,12 @@ std::vector<std::pair<double, double>> points_of(const fs::path& log, const Argu
   std::string text;
   for (std::size_t number = 1; std::getline(file, text); ++number) {
     const auto line = nlohmann::json::parse(text, nullptr, false);
-    if (!line.is_object() || !line.contains("step") || !line.contains("kind"))
+    const auto is_figure = [](const nlohmann::json& value) { return value.is_number() || value.is_null(); };  // null: it was not finite
+    if (!line.is_object() || !line.contains("kind") || !line.value("step", nlohmann::json()).is_number() ||
+        !is_figure(line.value(a.figure, nlohmann::json())))
       throw Error("{}: line {}: expected what `--log` writes", log.string(), number);
-    if (line["kind"] == a.kind && line.contains(a.figure)) points.emplace_back(line["step"].get<double>(), line[a.figure].get<double>());
+    if (line["kind"] == a.kind && line.contains(a.figure) && !line[a.figure].is_null())
+      points.emplace_back(line["step"].get<double>(), line[a.figure].get<double>());
   }
   if (points.empty()) throw Error("{}: no {} figure `{}`", log.string(), a.kind, a.figure);
   return points;

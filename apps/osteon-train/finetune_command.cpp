@@ -9,8 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "../interrupt.h"
+#include "../numbers.h"
+#include "../outputs.h"
 #include "../progress_bar.h"
 #include "characters.h"
+#include "device.h"
 #include "osteon/base/parallel.h"
 #include "osteon/base/progress.h"
 #include "osteon/dataset/holdout.h"
@@ -44,12 +47,37 @@ struct Unfinished {
   fs::path validation() const { return folder / "val.safetensors"; }
 };
 
+// Nothing but what a run leaves that was stopped while it prepared the characters.
+bool is_free(const fs::path& folder, const Unfinished& unfinished) {
+  if (!fs::exists(folder)) return true;
+  return fs::is_directory(folder) && std::ranges::all_of(fs::recursive_directory_iterator(folder), [&](const fs::directory_entry& entry) {
+           const fs::path& path = entry.path();
+           return path == unfinished.folder || path == unfinished.validation() || path.extension() == ".tmp";
+         });
+}
+
 void check_output(const FinetuneArguments& a, const Unfinished& unfinished) {
   const bool begun = fs::exists(unfinished.train());
   if (a.resume && !begun) throw Error("{}: found no unfinished run to go on with", a.output.string());
   if (!a.resume && begun) throw Error("{}: holds an unfinished run: go on with it with --resume, or remove it", a.output.string());
-  if (!a.resume && fs::exists(a.output) && !fs::is_empty(a.output))
-    throw Error("{}: is not empty; expected a new folder", a.output.string());
+  if (!a.resume && !is_free(a.output, unfinished)) throw Error("{}: is not empty; expected a new folder", a.output.string());
+  if (!a.log.empty()) check_outputs(a.general, {{"--log", a.log, ""}});
+}
+
+// What the result follows from: a run is gone on with by the same.
+std::string recipe_of(const FinetuneArguments& a) {
+  std::string text =
+      fmt::format("{} --init-models {}", fs::weakly_canonical(a.data).string(), fs::weakly_canonical(a.options.init).string());
+  for (const fs::path& file : a.general) text += " --with " + fs::weakly_canonical(file).string();
+  return text + (a.options.steps > 0 ? fmt::format(" --steps {}", a.options.steps) : fmt::format(" --minutes {}", a.options.minutes)) +
+         fmt::format(" --val-share {} --seed {}", a.validation_share, a.options.seed);
+}
+
+void check_recipe(const FinetuneArguments& a, const Unfinished& unfinished) {
+  const auto metadata = load_safetensors(unfinished.train()).metadata;
+  const auto begun = metadata.find("recipe");
+  if (begun != metadata.end() && begun->second != recipe_of(a))
+    throw Error("{}: was begun with {}; found {}, expected the same", a.output.string(), begun->second, recipe_of(a));
 }
 
 // Before the long work begins.
@@ -73,7 +101,7 @@ void prepare(const FinetuneArguments& a, const Unfinished& unfinished, ProgressB
   if (characters.train.empty()) throw Error("{}: its manifest has characters of split val alone, expected some of train", a.data.string());
   fs::create_directories(unfinished.folder);
   dataset::save_characters(unfinished.validation(), characters.validation, {{"sources", characters.sources}});
-  dataset::save_characters(unfinished.train(), characters.train, {{"sources", characters.sources}});
+  dataset::save_characters(unfinished.train(), characters.train, {{"sources", characters.sources}, {"recipe", recipe_of(a)}});
 }
 
 // The JSON list of a file's "sources" is put to the end of the list.
@@ -113,10 +141,10 @@ void print_table(const std::vector<train::FinetunedNetwork>& networks) {
   }
 }
 
-train::FinetuneData load_data(const FinetuneArguments& a, const Unfinished& unfinished) {
-  train::FinetuneData data{dataset::load_characters(unfinished.train()), dataset::load_characters(unfinished.validation()), {}};
-  for (const fs::path& file : a.general) std::ranges::move(dataset::load_characters(file), std::back_inserter(data.general));
-  return data;
+std::vector<dataset::PreparedCharacter> load_general(const FinetuneArguments& a) {
+  std::vector<dataset::PreparedCharacter> general;
+  for (const fs::path& file : a.general) std::ranges::move(dataset::load_characters(file), std::back_inserter(general));
+  return general;
 }
 
 void finetune(const CLI::App& command, FinetuneArguments a) {
@@ -130,17 +158,19 @@ void finetune(const CLI::App& command, FinetuneArguments a) {
   check_weights(a.options.init);
   a.options.output = a.output;
   a.options.checkpoints = unfinished.folder;
-  a.options.run.device = at::Device(a.device);
-  a.options.run.engine = a.options.run.device.is_cpu() ? train::Engine::fused : train::Engine::device;
+  choose_device(a.device, a.options.run);
   if (a.options.steps > 0) a.options.minutes = 0.0;
 
   std::vector<train::FinetunedNetwork> networks;
   {
     ProgressBar bar;
+    if (a.resume) check_recipe(a, unfinished);
+    train::FinetuneData data{{}, {}, load_general(a)};  // and the log: what is wrong with them is said first
+    TrainingLog log(a.log, TrainingLog::Shown::in_file_alone);
     if (!a.resume) prepare(a, unfinished, bar);
     a.options.metadata = metadata_of(command, a, unfinished);
-    const train::FinetuneData data = load_data(a, unfinished);
-    TrainingLog log(a.log, TrainingLog::Shown::in_file_alone);
+    data.own = dataset::load_characters(unfinished.train());
+    data.validation = dataset::load_characters(unfinished.validation());
     std::map<std::string, std::map<std::string, double>> losses;
     catch_interrupts();
     try {
@@ -171,16 +201,13 @@ void add_finetune_command(CLI::App& app) {
   command->add_option("--init-models", a->init, "Weights to start from (default: the shipped ones)")->check(CLI::ExistingDirectory);
   command->add_option("--with", a->general, "General characters (of `osteon dataset prepare`) to mix in by half, against forgetting")
       ->check(CLI::ExistingFile);
-  auto* minutes = command->add_option("--minutes", a->options.minutes, "Time for all networks together")
-                      ->check(CLI::PositiveNumber)
-                      ->capture_default_str();
-  command->add_option("--steps", a->options.steps, "Steps of each network, in place of the time")
-      ->check(CLI::PositiveNumber)
-      ->excludes(minutes);
+  auto* minutes =
+      command->add_option("--minutes", a->options.minutes, "Time for all networks together")->check(above_zero())->capture_default_str();
+  command->add_option("--steps", a->options.steps, "Steps of each network, in place of the time")->check(above_zero())->excludes(minutes);
   command->add_option("--val-share", a->validation_share, "Share of the characters that is kept for validation")
-      ->check(CLI::Range(0.01, 0.9))
+      ->check(within(0.01, 0.9))
       ->capture_default_str();
-  command->add_option("--seed", a->options.seed)->capture_default_str();
+  command->add_option("--seed", a->options.seed)->check(not_negative())->capture_default_str();
   command->add_option("--device", a->device, "cpu, cuda or cuda:N")->capture_default_str();
   command->add_option("--threads", a->threads, "CPU threads (default: all cores)")->check(CLI::Range(1, 1024));
   command->add_flag("--resume", a->resume, "Go on after Ctrl-C, with the same other options");

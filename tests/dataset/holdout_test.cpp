@@ -31,6 +31,13 @@ TEST(Holdout, takes_the_share_and_leaves_the_others) {
 
 TEST(Holdout, takes_one_at_least) { EXPECT_EQ(hold_out(different(3), 0.01, 1).validation.size(), 1u); }
 
+TEST(Holdout, leaves_one_to_learn_from) {
+  for (std::uint64_t seed = 1; seed < 5; ++seed) {
+    EXPECT_EQ(hold_out(different(2), 0.9, seed).train.size(), 1u);
+    EXPECT_EQ(hold_out(different(3), 0.9, seed).train.size(), 1u);
+  }
+}
+
 TEST(Holdout, is_the_same_for_the_same_seed_and_another_for_another) {
   const auto characters = different(8);
   EXPECT_EQ(hold_out(characters, 0.25, 3).validation, hold_out(characters, 0.25, 3).validation);

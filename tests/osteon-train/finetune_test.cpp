@@ -106,6 +106,49 @@ TEST(Finetune, refuses_folders_that_it_cannot_learn_from) {
   EXPECT_THAT(error_of("one --init-models empty"), HasSubstr("votes.safetensors: not there"));
 }
 
+TEST(Finetune, says_what_is_wrong_before_it_begins) {
+  const test::TemporaryFolder folder;
+  save_characters(folder / "mine");
+  std::ofstream(folder / "words.txt") << "words";
+  for (const char* wrong :
+       {"--with words.txt", "--log words.txt", "--log missing/log", "--device tpu", "--val-share nan", "--minutes nan"}) {
+    const Outcome run = osteon_train(folder, fmt::format("finetune mine -o tuned {}", wrong));
+    EXPECT_EQ(run.code, 2) << wrong;
+    EXPECT_FALSE(fs::exists(folder / "tuned")) << wrong;
+  }
+}
+
+TEST(Finetune, begins_anew_where_it_was_stopped_at_once_and_keeps_what_it_did_not_make) {
+  const test::TemporaryFolder folder;
+  save_characters(folder / "mine");
+  fs::create_directories(folder / "tuned/unfinished");
+  std::ofstream(folder / "tuned/unfinished/mine.txt") << "words";
+  EXPECT_THAT(osteon_train(folder, "finetune mine -o tuned --steps 1").err, HasSubstr("is not empty"));
+  EXPECT_TRUE(fs::exists(folder / "tuned/unfinished/mine.txt"));
+  fs::rename(folder / "tuned/unfinished/mine.txt", folder / "tuned/unfinished/val.safetensors.tmp");
+  EXPECT_EQ(osteon_train(folder, "finetune mine -o tuned --steps 1 --threads 1").code, 0);
+}
+
+TEST(Finetune, goes_on_with_the_same_options_alone) {
+  const test::TemporaryFolder folder;
+  save_characters(folder / "mine");
+  const std::string arguments = "finetune mine -o tuned --threads 1 --log log --steps ";
+  const Outcome stopped = osteon_train(folder, arguments + "1000000 & until [ -s log ]; do sleep 0.1; done; kill -TERM $!; wait $!");
+  EXPECT_EQ(stopped.code, 130);
+  EXPECT_THAT(osteon_train(folder, arguments + "5 --resume").err, AllOf(HasSubstr("was begun with"), HasSubstr("--steps 1000000")));
+}
+
+TEST(Finetune, reads_names_of_windows_and_leaves_out_those_that_are_no_text) {
+  const test::TemporaryFolder folder;
+  save_characters(folder / "mine");
+  fs::rename(folder / "mine/1.glb", folder / "mine/1.GLB");
+  fs::rename(folder / "mine/2.glb", folder / "mine/caf\xe9.glb");
+  const Outcome run = osteon_train(folder, "finetune mine -o tuned --steps 1 --threads 1");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("not in UTF-8"));
+  EXPECT_THAT(load_safetensors(folder / "tuned/votes.safetensors").metadata.at("sources"), HasSubstr("\"characters\":5"));
+}
+
 TEST(Curves, draw_a_line_for_each_log) {
   const test::TemporaryFolder folder;
   for (const char* name : {"first", "second"})
@@ -121,6 +164,10 @@ TEST(Curves, draw_a_line_for_each_log) {
   EXPECT_THAT(none.err, AllOf(HasSubstr("first.log"), HasSubstr("f1")));
   std::ofstream(folder / "bad.log") << "nonsense\n";
   EXPECT_THAT(osteon_train(folder, "curves bad.log -o none.svg").err, AllOf(HasSubstr("bad.log"), HasSubstr("line 1")));
+  std::ofstream(folder / "bad.log") << R"({"step":1,"kind":"validation","loss":"much"})";
+  EXPECT_THAT(osteon_train(folder, "curves bad.log -o none.svg").err, AllOf(HasSubstr("bad.log"), HasSubstr("line 1")));
+  std::ofstream(folder / "first.log", std::ios::app) << R"({"step":30,"kind":"validation","loss":null,"l1":null})";
+  EXPECT_EQ(osteon_train(folder, "curves first.log -o curves.svg").code, 0) << "of a loss that was not finite";
 }
 
 class FinetuneData : public testing::Test {

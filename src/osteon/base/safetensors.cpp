@@ -152,8 +152,8 @@ void save_safetensors(const std::filesystem::path& path, const Safetensors& cont
         {"dtype", type_info(array.dtype).name}, {"shape", array.shape}, {"data_offsets", {offset, offset + array.bytes.size()}}};
     offset += array.bytes.size();
   }
-  std::string text = header.dump();
-  text.resize((text.size() + 7) / 8 * 8, ' ');  // the data section starts 8-byte aligned
+  std::string text = header.dump(-1, ' ', false, json::error_handler_t::replace);  // a path in the metadata may be no UTF-8
+  text.resize((text.size() + 7) / 8 * 8, ' ');                                     // the data section starts 8-byte aligned
   const std::uint64_t header_size = text.size();
   const std::filesystem::path aside = path.string() + ".tmp";
   {

@@ -63,7 +63,8 @@ Holdout hold_out(std::span<const PreparedCharacter> characters, double share, st
   Holdout out;
   std::vector<std::vector<std::size_t>> too_large;
   for (auto& cluster : clusters) {
-    const bool fits = out.validation.size() + cluster.size() <= wanted;
+    const bool is_needed = out.train.empty() && &cluster == &clusters.back();  // to learn from
+    const bool fits = !is_needed && out.validation.size() + cluster.size() <= wanted;
     auto& to = fits ? out.validation : out.train;
     to.insert(to.end(), cluster.begin(), cluster.end());
     if (!fits) too_large.push_back(std::move(cluster));

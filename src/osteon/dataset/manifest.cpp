@@ -59,7 +59,7 @@ std::string sources_of(const std::vector<ManifestEntry>& entries) {
     const auto& [source, author, licence] = origin;
     list.push_back({{"source", source}, {"author", author}, {"licence", licence}, {"characters", count}});
   }
-  return list.dump();
+  return list.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);  // a folder's name may be no UTF-8
 }
 
 }  // namespace osteon::dataset

@@ -51,7 +51,7 @@ std::string joined(const std::string& sources, const std::string& more) {
 }
 
 void prepare(const PrepareArguments& arguments) {
-  check_outputs({}, {{"-o", arguments.output, ".safetensors"}});
+  check_late_outputs({}, {{"-o", arguments.output, ".safetensors"}});
   const auto entries = dataset::read_manifest(arguments.data, arguments.split);
   const MotionFolder motions = motions_for(arguments);
   std::vector<std::optional<dataset::PreparedCharacter>> results(entries.size());

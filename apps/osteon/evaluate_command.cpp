@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "../numbers.h"
 #include "../outputs.h"
 #include "calibration.h"
 #include "choice.h"
@@ -204,6 +206,7 @@ void write_json(const std::filesystem::path& path, const Tables& tables) {
   for (const metrics::ScoreTable& table : tables) out.push_back(metrics::to_json(table));
   std::ofstream file(path);
   file << out.dump(2) << '\n';
+  file.close();
   if (!file) throw Error("{}: cannot be written", path.string());
 }
 
@@ -223,6 +226,8 @@ void measure(const EvaluateArguments& arguments) {
   const Tables tables = arguments.data.empty() ? compare_files(arguments) : evaluate_split(arguments);
   for (const metrics::ScoreTable& table : tables) fmt::print("{}\n", metrics::to_text(table));
   if (!arguments.json.empty()) write_json(arguments.json, tables);
+  if (std::ranges::all_of(tables, [](const metrics::ScoreTable& table) { return table.rows.empty(); }))
+    throw Error("evaluate: nothing could be measured");
 }
 
 void check(const EvaluateArguments& arguments) {
@@ -251,7 +256,7 @@ void evaluate(EvaluateArguments arguments) {
     measure(arguments);
 }
 
-void add_pictures(CLI::App& command, EvaluateArguments& arguments, CLI::Option* data) {
+void add_pictures(CLI::App& command, EvaluateArguments& arguments, CLI::Option* data, CLI::Option* json) {
   auto* gallery =
       command.add_option("--gallery", arguments.gallery, "Instead: draw the worst ten skeletons beside what they should be (PNG)");
   auto* plots = command.add_option("--plots", arguments.plots, "Instead: draw how the measures follow the options, into this folder (SVG)");
@@ -260,6 +265,7 @@ void add_pictures(CLI::App& command, EvaluateArguments& arguments, CLI::Option* 
   gallery->type_name("FILE")->needs(data)->excludes(plots)->excludes(calibration);
   plots->type_name("FOLDER")->check(CLI::ExistingDirectory)->needs(data)->excludes(calibration);
   calibration->type_name("FOLDER")->check(CLI::ExistingDirectory)->needs(data);
+  for (CLI::Option* instead : {gallery, plots, calibration}) instead->excludes(json);
 }
 
 // What does not matter for use, but for finding out what is good for what.
@@ -304,13 +310,12 @@ void add_evaluate_command(CLI::App& app) {
       ->check(CLI::IsMember({0, 90, 180, 270}));
   add_choice(*command, "--up", arguments->up, {{"x", io::UpAxis::x}, {"y", io::UpAxis::y}, {"z", io::UpAxis::z}},
              "Show every character with this axis up");
-  command->add_option("--scale", arguments->scale, "Show every character so much larger")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  command->add_option("--scale", arguments->scale, "Show every character so much larger")->check(above_zero())->capture_default_str();
   arguments->models.add_to(*command);
   command->add_option("--detail", arguments->options.detail, "How many joints to find: 0 few .. 1 many")->capture_default_str();
-  command->add_option("--json", arguments->json, "Also write the table, with every character's values, to this file (JSON)");
-  add_pictures(*command, *arguments, data);
+  CLI::Option* json =
+      command->add_option("--json", arguments->json, "Also write the table, with every character's values, to this file (JSON)");
+  add_pictures(*command, *arguments, data, json);
   add_study_options(*command, *arguments);
   command->callback([arguments] { evaluate(*arguments); });
 }

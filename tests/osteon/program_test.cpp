@@ -52,6 +52,18 @@ TEST(Program, choices_are_made_by_name_alone) {
   EXPECT_THAT(osteon(folder, "rig --help").out, HasSubstr("--fingers auto|off=auto"));
 }
 
+TEST(Program, evaluation_of_nothing_is_an_error) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "manifest.jsonl")
+      << R"({"id":"a","file":"a.glb","split":"val","group":"g","category":"c","licence":"l","author":"a","source_repo":"s"})";
+  const auto run = osteon(folder, "evaluate --data .");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.out, HasSubstr("a.glb: no such file"));
+  EXPECT_THAT(run.err, HasSubstr("nothing could be measured"));
+  EXPECT_THAT(osteon(folder, "evaluate --data . --json a.json --gallery a.png").err, HasSubstr("--json excludes --gallery"));
+  EXPECT_THAT(osteon(folder, "evaluate --data . --scale nan").err, HasSubstr("--scale: found nan"));
+}
+
 TEST(Program, bad_files_end_with_2_and_are_named) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "empty.obj");

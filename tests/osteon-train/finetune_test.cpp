@@ -173,15 +173,7 @@ TEST(Curves, draw_a_line_for_each_log) {
 class FinetuneData : public testing::Test {
  protected:
   static train::FinetuneData data() {
-    static const std::vector<dataset::PreparedCharacter> characters = [] {
-      dataset::PrepareOptions options;
-      options.working_mesh = {300, 200, 5000};
-      std::vector<dataset::PreparedCharacter> out;
-      for (std::uint64_t seed = 1; seed <= 6; ++seed)
-        out.push_back(
-            dataset::prepare(synth::make_character(synth::Kind::Biped, seed, coarse()), {std::to_string(seed), "", "own"}, options));
-      return out;
-    }();
+    static const std::vector<dataset::PreparedCharacter> characters = test::prepared_bipeds(6);
     return {{characters.begin(), characters.end() - 2}, {characters.end() - 2, characters.end()}, {}};
   }
   train::FinetuneOptions options(const std::string& name) const {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Training one network, as users run it.
-#include <map>
-
 #include "osteon-train/program.h"
 #include "osteon/base/safetensors.h"
 #include "osteon/dataset/pack.h"
@@ -17,15 +15,7 @@ using testing::HasSubstr;
 class Training : public testing::Test {
  protected:
   void SetUp() override {
-    static const std::vector<dataset::PreparedCharacter> characters = [] {
-      dataset::PrepareOptions options;
-      options.working_mesh = {300, 200, 5000};
-      std::vector<dataset::PreparedCharacter> out;
-      for (std::uint64_t seed = 1; seed <= 2; ++seed)
-        out.push_back(
-            dataset::prepare(synth::make_character(synth::Kind::Biped, seed, test::coarse()), {std::to_string(seed), "", "own"}, options));
-      return out;
-    }();
+    static const std::vector<dataset::PreparedCharacter> characters = test::prepared_bipeds(2);
     dataset::save_characters(folder_ / "train.safetensors", characters, {{"sources", "[]"}});
     std::ofstream(folder_ / "words.txt") << "words";
   }
@@ -36,18 +26,11 @@ class Training : public testing::Test {
 
   // Ends with 2 and says `why`, and all files are as before.
   void expect_refused(const std::string& arguments, const std::string& why) const {
-    const auto before = files();
+    const auto before = files_of(folder_);
     const auto run = train(arguments);
     EXPECT_EQ(run.code, 2) << arguments;
     EXPECT_THAT(run.err, AllOf(HasSubstr("error: "), HasSubstr(why))) << arguments;
-    EXPECT_TRUE(files() == before) << arguments;
-  }
-
-  std::map<fs::path, std::string> files() const {
-    std::map<fs::path, std::string> out;
-    for (const auto& entry : fs::directory_iterator(folder_.path()))
-      if (const auto name = entry.path().filename(); name != "out.txt" && name != "err.txt") out[name] = test::content(entry.path());
-    return out;
+    EXPECT_TRUE(files_of(folder_) == before) << arguments;
   }
 
   test::TemporaryFolder folder_;

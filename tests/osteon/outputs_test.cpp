@@ -25,19 +25,12 @@ class Outputs : public testing::Test {
 
   // The command ends with 2 and one line that says `why`, and all files are as before.
   void expect_refused(const std::string& arguments, const std::string& why) {
-    const auto before = files();
+    const auto before = files_of(folder_);
     const auto run = osteon(folder_, arguments);
     EXPECT_EQ(run.code, 2) << arguments;
     EXPECT_THAT(run.err, AllOf(StartsWith("error: "), HasSubstr(why))) << arguments;
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << arguments;
-    EXPECT_TRUE(files() == before) << arguments;
-  }
-
-  std::map<fs::path, std::string> files() const {
-    std::map<fs::path, std::string> out;
-    for (const auto& entry : fs::directory_iterator(folder_.path()))
-      if (const auto name = entry.path().filename(); name != "out.txt" && name != "err.txt") out[name] = test::content(entry.path());
-    return out;
+    EXPECT_TRUE(files_of(folder_) == before) << arguments;
   }
 
   test::TemporaryFolder folder_;

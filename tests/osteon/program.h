@@ -1,33 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/wait.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-
-#include "support/expect.h"
+#include "support/program.h"
 
 namespace osteon::test {
 
-inline std::string content(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-struct Outcome {
-  int code;
-  std::string out, err;
-};
-
 // Runs `osteon ARGUMENTS` through the shell in the folder.
 inline Outcome osteon(const TemporaryFolder& folder, const std::string& arguments) {
-  const std::string command = fmt::format("cd {} && {} {} >out.txt 2>err.txt", folder.path().string(), OSTEON_PROGRAM, arguments);
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder / "out.txt"), content(folder / "err.txt")};
+  return run_in(folder, fmt::format("{} {}", OSTEON_PROGRAM, arguments));
 }
 
 }  // namespace osteon::test

@@ -2,6 +2,7 @@
 #include "osteon/pipelines/rignet.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "figure_with_hands.h"
@@ -320,6 +321,24 @@ TEST(RigCharacter, shapes_that_are_no_characters_get_a_valid_rig_too) {
     const geometry::WorkingMeshOptions small{.target_vertices = 300, .min_vertices = 200};  // enough here, and soon done
     expect_usable(mesh, rig_character(mesh, untrained(), {.working_mesh = small}));
     expect_usable(mesh, rig_character(mesh, untrained(), {.symmetry = Symmetry::off, .working_mesh = small}));
+  }
+}
+
+TEST(RigCharacter, what_is_beside_the_character_follows_the_root_and_changes_nothing_else) {
+  const TriangleMesh ground = shapes::transformed(shapes::box({900, 1, 900}), Transform(Eigen::Translation3f(10, -4.5f, 20)));
+  const TriangleMesh beside = shapes::merged(ground, shapes::shifted(shapes::icosphere(0, 1), {5000, 100, 0}));
+  const TriangleMesh mesh = shapes::merged(beside, figure());
+  const RignetResult result = rig_character(mesh, untrained());
+  expect_usable(mesh, result);
+  EXPECT_THAT(result.report.warnings, testing::Contains(HasSubstr("20 of")));
+  EXPECT_EQ(result.skeleton.names, rigged_figure().skeleton.names);
+  EXPECT_EQ(result.skeleton.rest_positions, rigged_figure().skeleton.rest_positions);
+  const Influence root{JointId(0), 1.0f};
+  const auto same = [](const Influence& a, const Influence& b) { return a.joint == b.joint && std::abs(a.weight - b.weight) < 1e-6f; };
+  for (VertexId v : mesh.positions.ids()) {
+    const std::size_t first = beside.positions.size();  // of the figure's vertices
+    const auto expected = index(v) < first ? std::span(&root, 1) : rigged_figure().weights[static_cast<VertexId>(index(v) - first)];
+    EXPECT_TRUE(std::ranges::equal(result.weights[v], expected, same)) << index(v);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "osteon/geometry/stance.h"
+#include "osteon/geometry/surroundings.h"
 #include "osteon/pipelines/body.h"
 #include "osteon/pipelines/connectivity.h"
 #include "osteon/pipelines/mirrored_skin.h"
@@ -112,11 +113,8 @@ ConnectedJoints connect_upright(const TriangleMesh& mesh, std::span<const Vec3f>
   return out;
 }
 
-}  // namespace
-
-RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options,
-                           const Progress& progress) {
-  validate(options);
+RignetResult rig_alone(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options,
+                       const Progress& progress) {
   RignetResult result;
   RigReport& report = result.report;
   Stages stages(report, progress);
@@ -136,6 +134,32 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   NetworkWeights raw = network_weights(skeleton, list, distances, body, models, options.ablation, stages, report.warnings);
   result.weights = stages.run("weights", [&] { return finished(std::move(raw), body, skeleton, options.skin); });
   assess(body, skeleton, distances, options, report);
+  return result;
+}
+
+// Of all vertices of the mesh: what is not the character follows the root.
+SkinWeights with_surroundings(const SkinWeights& of_character, const geometry::Surroundings& around) {
+  constexpr Influence kRoot{JointId(0), 1.0f};
+  SkinWeights out;
+  std::uint32_t next = 0;
+  for (VertexId v : around.has.ids()) out.append(around.has[v] ? std::span(&kRoot, 1) : of_character[VertexId(next++)]);
+  return out;
+}
+
+}  // namespace
+
+RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options,
+                           const Progress& progress) {
+  validate(options);
+  const std::span<const Vec3f> joints = options.skeleton ? options.skeleton->rest_positions.raw() : std::span<const Vec3f>{};
+  const geometry::Surroundings around = geometry::surroundings(mesh, joints);
+  if (around.vertices == 0) return rig_alone(mesh, models, options, progress);
+  RignetResult result = rig_alone(geometry::without(mesh, around.has), models, options, progress);
+  result.weights = with_surroundings(result.weights, around);
+  result.report.vertices = mesh.positions.size();
+  result.report.warnings.push_back(
+      fmt::format("{} of {} vertices are the ground under the character, or far away from it: they were left out and follow the root",
+                  around.vertices, mesh.positions.size()));
   return result;
 }
 

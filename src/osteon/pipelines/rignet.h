@@ -28,6 +28,7 @@ struct RignetResult {
 // The whole of RigNet: Xu, Zhou, Kalogerakis, Landreth, Singh. RigNet: Neural Rigging for Articulated Characters. SIGGRAPH 2020.
 // mesh -> its own frame (body_frame.h) -> clean working mesh -> displacement and attention -> joints -> tree -> hands (hands.h) ->
 // joints drawn to edge loops (edge_loops.h) -> skin -> weights on the mesh that was given.
+// What is not the character (geometry/surroundings.h) is left out before, follows the root, and a warning counts it.
 // The rig is always valid: where the networks find no joints it is a single one in the middle, with confidence 0 and a warning.
 // The same for any order of vertices and faces (weights follow their vertices) and any number of threads.
 // The same, turned, for a mesh turned by right angles about the up axis, or that stands on z = 0 instead of y = 0. Where it stands on

@@ -138,6 +138,29 @@ TEST(SkinCharacter, by_networks_every_vertex_of_a_heap_of_pieces_has_weights) {
   }
 }
 
+TEST(SkinCharacter, the_ground_follows_the_root_and_changes_nothing_else) {
+  const Rig rig = test::biped();
+  const TriangleMesh ground = shapes::shifted(shapes::box({50, 0.1f, 50}), {0, bounds(rig.mesh).min().y() - 0.05f, 0});
+  const TriangleMesh mesh = shapes::merged(ground, rig.mesh);
+  SkinCharacterOptions options;
+  options.bind.resolution = 64;
+  const SkinWeights alone = skin_character(rig.mesh, rig.skeleton, options).weights;
+  const skin::Binding bound = skin_character(mesh, rig.skeleton, options);
+  EXPECT_THAT(bound.notes, testing::Contains(testing::HasSubstr("8 of")));
+  SkinWeights expected;
+  const Influence root{JointId(0), 1.0f}, locked{JointId(3), 1.0f};
+  for (std::size_t v = 0; v < 8; ++v) expected.append({&root, 1});
+  for (VertexId v : rig.mesh.positions.ids()) expected.append(alone[v]);
+  EXPECT_EQ(bound.weights, expected);
+
+  options.bind.locked = {locked.joint};
+  SkinWeights before;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) before.append({v < 8 ? &locked : &root, 1});
+  options.bind.before = before;
+  const SkinWeights kept = skin_character(mesh, rig.skeleton, options).weights;
+  for (std::uint32_t v = 0; v < 8; ++v) EXPECT_EQ(kept[VertexId{v}].front(), locked);
+}
+
 TEST(SkinQuality, a_skin_by_its_own_bones_leaks_less_than_one_by_any) {
   Rig rig = test::biped();
   const SkinQuality good = skin_quality(rig);
@@ -163,6 +186,12 @@ TEST(SkeletonFit, leaves_a_skeleton_that_fits_alone) {
   const SkeletonFit fit = fit_skeleton(rig.skeleton, rig.mesh);
   EXPECT_TRUE(fit.to_body.matrix().isIdentity(0.0));
   EXPECT_EQ(fit.note, "");
+}
+
+TEST(SkeletonFit, what_is_beside_the_body_does_not_count) {
+  Rig rig = test::biped();
+  rig.mesh = shapes::merged(rig.mesh, shapes::shifted(shapes::icosphere(0, 0.01f), {50, 0, 0}));
+  EXPECT_EQ(fit_skeleton(rig.skeleton, rig.mesh).note, "");
 }
 
 TEST(SkeletonFit, finds_centimetres_and_the_other_up_axis) {

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "osteon/geometry/stance.h"
-#include "osteon/geometry/surroundings.h"
 #include "osteon/pipelines/body.h"
 #include "osteon/pipelines/connectivity.h"
+#include "osteon/pipelines/left_out.h"
 #include "osteon/pipelines/mirrored_skin.h"
 #include "osteon/pipelines/skeleton_prediction.h"
 #include "osteon/pipelines/skin_networks.h"
@@ -137,15 +137,6 @@ RignetResult rig_alone(const TriangleMesh& mesh, const infer::RignetModels& mode
   return result;
 }
 
-// Of all vertices of the mesh: what is not the character follows the root.
-SkinWeights with_surroundings(const SkinWeights& of_character, const geometry::Surroundings& around) {
-  constexpr Influence kRoot{JointId(0), 1.0f};
-  SkinWeights out;
-  std::uint32_t next = 0;
-  for (VertexId v : around.has.ids()) out.append(around.has[v] ? std::span(&kRoot, 1) : of_character[VertexId(next++)]);
-  return out;
-}
-
 }  // namespace
 
 RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& models, const RignetOptions& options,
@@ -157,9 +148,7 @@ RignetResult rig_character(const TriangleMesh& mesh, const infer::RignetModels& 
   RignetResult result = rig_alone(geometry::without(mesh, around.has), models, options, progress);
   result.weights = with_surroundings(result.weights, around);
   result.report.vertices = mesh.positions.size();
-  result.report.warnings.push_back(
-      fmt::format("{} of {} vertices are the ground under the character, or far away from it: they were left out and follow the root",
-                  around.vertices, mesh.positions.size()));
+  result.report.warnings.push_back(note_of(around));
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "osteon/geometry/box_of_faces.h"
+#include "osteon/geometry/surroundings.h"
 
 namespace osteon::pipelines {
 namespace {
@@ -33,7 +34,7 @@ bool fits(const Skeleton& skeleton, const Eigen::Affine3d& transform, const Eige
 }  // namespace
 
 SkeletonFit fit_skeleton(const Skeleton& skeleton, const TriangleMesh& mesh) {
-  const Eigen::AlignedBox3f b = geometry::box_of_faces(mesh);
+  const Eigen::AlignedBox3f b = geometry::box_of_faces(geometry::without(mesh, geometry::surroundings(mesh).has));
   const Eigen::AlignedBox3d body(b.min().cast<double>(), b.max().cast<double>());
   const std::array<std::pair<const char*, double>, 3> turns{
       {{"", 0.0}, {", z up taken for y up", -0.5 * std::numbers::pi}, {", y up taken for z up", 0.5 * std::numbers::pi}}};

@@ -2,6 +2,7 @@
 #include "osteon/pipelines/skin_character.h"
 
 #include "osteon/base/error.h"
+#include "osteon/pipelines/left_out.h"
 #include "osteon/pipelines/mirrored_skin.h"
 #include "osteon/pipelines/neuroskinning.h"
 #include "osteon/pipelines/rignet.h"
@@ -19,7 +20,7 @@ skin::Binding by_rignet(const TriangleMesh& mesh, const Skeleton& skeleton, cons
   rignet.skin.rigid_islands = options.bind.islands == skin::Islands::rigid;
   if (!options.neuroskinning) rignet.ablation.neuroskinning = 0.0f;
   RignetResult result = rig_character(mesh, *options.rignet, rignet);
-  return {std::move(result.weights), {}, 0, std::move(result.report.warnings), std::move(result.report.repairs)};
+  return {std::move(result.weights), 0, std::move(result.report.warnings), std::move(result.report.repairs)};
 }
 
 skin::Binding by_neuroskinning(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
@@ -29,7 +30,7 @@ skin::Binding by_neuroskinning(const TriangleMesh& mesh, const Skeleton& skeleto
   neuro.prune_share = options.bind.prune_share.value_or(neuro.prune_share);
   neuro.rigid_islands = options.bind.islands == skin::Islands::rigid;
   NeuroskinningResult result = neuroskinning_weights(mesh, skeleton, *options.neuroskinning, neuro);
-  return {std::move(result.weights), {}, result.rigid_islands, std::move(result.warnings), std::move(result.repairs)};
+  return {std::move(result.weights), result.rigid_islands, std::move(result.warnings), std::move(result.repairs)};
 }
 
 skin::Binding by_networks(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
@@ -39,16 +40,31 @@ skin::Binding by_networks(const TriangleMesh& mesh, const Skeleton& skeleton, co
   return out;
 }
 
-}  // namespace
+bool is_by_networks(const SkinCharacterOptions& options) { return options.rignet || options.neuroskinning; }
 
-skin::Binding skin_character(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
-  skin::Binding out =
-      options.rignet || options.neuroskinning ? by_networks(mesh, skeleton, options) : skin::bind(mesh, skeleton, options.bind);
+skin::Binding skin_alone(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
+  skin::Binding out = is_by_networks(options) ? by_networks(mesh, skeleton, options) : skin::bind(mesh, skeleton, options.bind);
   if (!options.mirror) return out;
   const auto mirror = mirror_map(mesh, skeleton);
   if (!mirror) throw Error("mirror: the mesh or the skeleton is not its own mirror image; expected a partner for every vertex and joint");
   out.weights =
       mirrored_exactly(out.weights, mirror->from_original, mirror->vertex_partner, mirror->joint_partner, options.bind.max_influences);
+  return out;
+}
+
+}  // namespace
+
+skin::Binding skin_character(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options) {
+  if (!is_by_networks(options) && options.bind.method == skin::Method::transfer) return skin_alone(mesh, skeleton, options);
+  const geometry::Surroundings around = geometry::surroundings(mesh, skeleton.rest_positions.raw());
+  if (around.vertices == 0) return skin_alone(mesh, skeleton, options);
+  SkinCharacterOptions unlocked = options;
+  unlocked.bind.locked = {};
+  skin::Binding out = skin_alone(geometry::without(mesh, around.has), skeleton, unlocked);
+  out.weights = with_surroundings(out.weights, around);
+  if (!options.bind.locked.empty())
+    out.weights = skin::with_locked(out.weights, options.bind.before.value(), options.bind.locked, options.bind.max_influences);
+  out.notes.push_back(note_of(around));
   return out;
 }
 

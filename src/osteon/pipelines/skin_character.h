@@ -18,7 +18,8 @@ struct SkinCharacterOptions {
   bool mirror = false;                                  // make the two halves of a symmetric character equal, bit by bit
 };
 
-// Skin weights for a given skeleton, which is not touched: by geometry, by RigNet's networks or by NeuroSkinning's.
+// Skin weights for a given skeleton, which is not touched: by geometry, by RigNet's networks or by NeuroSkinning's. What is not the
+// character (geometry/surroundings.h) is left out and follows the root, but for Method::transfer, and a note counts it.
 // Throws Error where the mesh cannot be bound, and for `mirror` where mesh or skeleton are not symmetric.
 // Pre: validate(mesh) and validate(skeleton) hold, in one space.
 skin::Binding skin_character(const TriangleMesh& mesh, const Skeleton& skeleton, const SkinCharacterOptions& options = {});

@@ -124,7 +124,6 @@ Binding bind(const TriangleMesh& mesh, const Skeleton& skeleton, const BindOptio
   prune(rows, options.prune_share.value_or(0.05f), options.max_influences);
   out.weights = to_skin_weights(rows, body.clean.from_original);
   if (!options.locked.empty()) out.weights = with_locked(out.weights, options.before.value(), options.locked, options.max_influences);
-  for (const VertexId v : body.clean.from_original) out.distances.push_back(body.distances.of(v).front().distance);
   return out;
 }
 

@@ -37,7 +37,7 @@ struct BindOptions {
   std::size_t max_influences = 4;         // per vertex
   Islands islands = Islands::rigid;
   IslandOptions island = {.largest = 0.7f, .second = 0.7f};  // geometry alone is less sure of small parts than networks are
-  std::optional<Rig> from = {};  // for Method::transfer: the other mesh, in the same space
+  std::optional<Rig> from = {};                              // for Method::transfer: the other mesh, in the same space
   TransferOptions transfer;
   // Joints that keep the weights which they have in `before`; what is left is shared by the others.
   std::vector<JointId> locked = {};
@@ -46,7 +46,6 @@ struct BindOptions {
 
 struct Binding {
   SkinWeights weights;               // one row per vertex of the mesh that was given, in its order
-  PerVertex<float> distances;        // of the nearest bone by way of the body, in the mesh's unit
   std::size_t rigid_islands = 0;     // how many
   std::vector<std::string> notes;    // what the user should know
   std::vector<std::string> repairs;  // what was wrong with the mesh and was mended in the working copy

@@ -150,6 +150,17 @@ TEST(Decimate, folds_faces_only_where_more_vertices_would_be_left_than_may_be) {
   EXPECT_EQ(connected_components(mesh).count, 1u);
 }
 
+// Subdividing a face as thin as they come in models gives an even pattern of such faces; merging any two vertices makes some of them
+// thinner.
+TEST(Decimate, thin_faces_cut_finely_do_not_take_the_vertices_of_the_body) {
+  const TriangleMesh body = shapes::icosphere(5);
+  const TriangleMesh plate = shapes::transformed(shapes::sheet(64, 64), Transform(Eigen::Scaling(0.02f, 1.0f, 1.0f)));
+  const TriangleMesh mesh = shapes::merged(body, shapes::shifted(plate, {2, 0, 0}));
+  const DecimatedMesh reduced = decimate(mesh, {.target_vertices = 300});
+  EXPECT_EQ(reduced.mesh.positions.size(), 300u);
+  EXPECT_NEAR(surface_area(reduced.mesh) / surface_area(mesh), 1, 0.03);
+}
+
 TEST(Decimate, does_not_depend_on_the_unit) {
   for (const float scale : {1024.0f, 1.0f / 1024}) {  // exact in floats
     const TriangleMesh sphere = shapes::icosphere(4);

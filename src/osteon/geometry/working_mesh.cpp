@@ -136,6 +136,9 @@ WorkingMesh make_working_mesh(const TriangleMesh& original, const WorkingMeshOpt
   WorkingMesh out;
   out.clean = clean(original);
   if (out.clean.mesh.faces.empty()) throw Error("the mesh has {} faces, but none with area", original.faces.size());
+  if (const std::size_t turned = turn_against_neighbours(out.clean.mesh))
+    out.clean.repairs.push_back(
+        fmt::format("{} of {} faces looked the other way than the faces beside them and were turned", turned, out.clean.mesh.faces.size()));
   if (const std::size_t turned = turn_inside_out(out.clean.mesh))
     out.clean.repairs.push_back(fmt::format("{} of {} faces were inside out and were turned", turned, out.clean.mesh.faces.size()));
   out.normalization = normalization_of(out.clean.mesh);

@@ -33,7 +33,7 @@ struct WorkingMeshOptions {            // min <= target <= max
 struct WorkingMesh {
   TriangleMesh mesh;  // normalised
   Normalization normalization;
-  CleanMesh clean;                                // of the original, in its unit; no body inside out
+  CleanMesh clean;                                // of the original, in its unit; neighbours face alike, no body inside out
   PerVertex<std::optional<VertexId>> from_clean;  // clean vertex -> the vertex of `mesh` that stands for it; none: its piece was left out
 };
 

@@ -324,6 +324,12 @@ TEST(RigCharacter, shapes_that_are_no_characters_get_a_valid_rig_too) {
   }
 }
 
+TEST(RigCharacter, says_that_two_characters_side_by_side_are_rigged_as_one) {
+  const RignetResult result = rig_character(shapes::merged(figure(), shapes::shifted(figure(), {400, 0, 0})), untrained());
+  EXPECT_THAT(result.report.warnings, testing::Contains(HasSubstr("one by one")));
+  EXPECT_THAT(rigged_figure().report.warnings, Not(testing::Contains(HasSubstr("one by one"))));
+}
+
 TEST(RigCharacter, what_is_beside_the_character_follows_the_root_and_changes_nothing_else) {
   const TriangleMesh ground = shapes::transformed(shapes::box({900, 1, 900}), Transform(Eigen::Translation3f(10, -4.5f, 20)));
   const TriangleMesh beside = shapes::merged(ground, shapes::shifted(shapes::icosphere(0, 1), {5000, 100, 0}));

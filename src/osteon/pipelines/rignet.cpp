@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "osteon/geometry/stance.h"
+#include "osteon/geometry/surroundings.h"
+#include "osteon/geometry/wholeness.h"
 #include "osteon/pipelines/body.h"
 #include "osteon/pipelines/connectivity.h"
 #include "osteon/pipelines/left_out.h"
@@ -97,6 +99,15 @@ void assess(const Body& body, const Skeleton& skeleton, const Matrix& distances,
   if (options.skeleton) report.confidence = report.coverage;
 }
 
+void warn_if_not_one_whole(const Body& body, std::vector<std::string>& warnings) {
+  const TriangleMesh character = turned(body.working.clean.mesh, body.frame.turn.transpose());
+  const Eigen::Index up = body.frame.is_z_up ? 2 : 1;
+  if (geometry::is_open_at_a_side(character, up))
+    warnings.push_back("the mesh is open along one of its sides: where it is half of a character, apply its mirror modifier first");
+  if (geometry::stands_side_by_side(character, up))
+    warnings.push_back("the mesh stands in two places side by side and was rigged as one character: several are to be rigged one by one");
+}
+
 // The joints are in the mesh's world coordinates.
 ConnectedJoints connect_upright(const TriangleMesh& mesh, std::span<const Vec3f> joints, const infer::RignetModels& models,
                                 const RignetOptions& options) {
@@ -127,6 +138,7 @@ RignetResult rig_alone(const TriangleMesh& mesh, const infer::RignetModels& mode
   report.up = body.frame.is_z_up ? 'z' : 'y';
   if (body.frame.is_z_up && geometry::stance(mesh) == geometry::Stance::on_z)
     report.warnings.push_back("the character stands on the plane z = 0: z was taken for its up axis");
+  if (!options.skeleton) warn_if_not_one_whole(body, report.warnings);
   result.skeleton = options.skeleton ? *options.skeleton : turned(skeleton, body.frame.turn.transpose());
   const std::vector<Bone> list = normalised_bones(skeleton, body.working.normalization);
   if (is_too_coarse(list, skeleton.size(), body, options.working_mesh)) study_closer(body, mesh, options.working_mesh, stages);

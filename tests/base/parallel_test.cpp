@@ -2,6 +2,7 @@
 #include "osteon/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -34,6 +35,21 @@ TEST(Parallel, an_exception_of_the_body_reaches_the_caller) {
   EXPECT_THROW(parallel_for(100, 1, [](std::size_t i, std::size_t) { if (i == 57) throw std::runtime_error("57"); }), std::runtime_error);
   std::atomic<int> count = 0;
   parallel_for(100, 1, [&](std::size_t, std::size_t) { ++count; });  // and the pool still works
+  EXPECT_EQ(count, 100);
+}
+
+TEST(Parallel, makes_do_with_the_threads_that_the_system_gives) {
+  pthread_attr_t before, vast;
+  ASSERT_EQ(pthread_getattr_default_np(&before), 0);
+  ASSERT_EQ(pthread_attr_init(&vast), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&vast, std::size_t{1} << 50), 0);  // of which there is no memory for one
+  const Threads scope(1);
+  ASSERT_EQ(pthread_setattr_default_np(&vast), 0);
+  set_threads(3);
+  EXPECT_EQ(threads(), 1);
+  ASSERT_EQ(pthread_setattr_default_np(&before), 0);
+  std::atomic<int> count = 0;
+  parallel_for(100, 1, [&](std::size_t, std::size_t) { ++count; });
   EXPECT_EQ(count, 100);
 }
 

@@ -41,8 +41,13 @@ struct Loop {
 
 class Pool {
  public:
+  // As many as the system gives: results do not depend on their number.
   explicit Pool(int helpers) {
-    for (int i = 0; i < helpers; ++i) threads_.emplace_back([this] { serve(); });
+    threads_.reserve(static_cast<std::size_t>(helpers));
+    try {
+      for (int i = 0; i < helpers; ++i) threads_.emplace_back([this] { serve(); });
+    } catch (const std::exception&) {  // out of threads, or of memory for one
+    }
   }
   ~Pool() {
     {

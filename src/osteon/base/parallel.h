@@ -6,7 +6,8 @@
 
 namespace osteon {
 
-// Threads that parallel_for uses: the number of cores unless set. Pre for set_threads: n >= 1, no parallel_for is running.
+// Threads that parallel_for uses: the number of cores unless set, or as many as the system gives. Pre for set_threads: n >= 1, no
+// parallel_for is running.
 int threads();
 void set_threads(int n);
 

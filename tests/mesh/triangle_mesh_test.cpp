@@ -53,6 +53,17 @@ TEST(TriangleMesh, area_and_normals_of_a_sphere) {
   for (VertexId v : sphere.positions.ids()) EXPECT_VEC3_NEAR(normals[v], sphere.positions[v], 0.02f);
 }
 
+TEST(TriangleMesh, normals_are_the_same_in_every_size) {
+  const TriangleMesh sphere = shapes::icosphere(2);
+  const auto normals = vertex_normals(sphere);
+  for (const float size : {1e-14f, 1e-9f, 1e12f}) {
+    TriangleMesh other = sphere;
+    for (Vec3f& p : other.positions) p *= size;
+    const auto of_other = vertex_normals(other);
+    for (VertexId v : sphere.positions.ids()) EXPECT_VEC3_NEAR(of_other[v], normals[v], 1e-5f) << size;
+  }
+}
+
 TEST(TriangleMesh, components_are_numbered_by_their_first_vertex) {
   const auto c = connected_components(shapes::merged(shapes::box({1, 1, 1}), shapes::icosphere(0)));
   EXPECT_EQ(c.count, 2u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/mesh/triangle_mesh.h"
 
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -42,6 +43,7 @@ PerVertex<Vec3f> vertex_normals(const TriangleMesh& mesh) {
   for (FaceId f : mesh.faces.ids())
     for (VertexId v : mesh.faces[f]) normals[v] += area_vector(mesh, f);
   for (Vec3f& n : normals) {
+    if (!std::isnormal(n.squaredNorm())) n.stableNormalize();  // the square of the area is too small or too large for a float
     const float length = n.norm();
     n = length > 0.0f ? Vec3f(n / length) : Vec3f::UnitY();
   }

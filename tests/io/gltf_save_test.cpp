@@ -300,6 +300,28 @@ TEST(SaveGlb, files_beside_a_gltf_move_into_the_glb) {
   EXPECT_TRUE(has_repair(saved.changes, "gone.png: no such file; the image stays a reference"));
 }
 
+// The tetrahedron with the skeleton of another file.
+Saved save_with_skeleton_of(const gltf::Document& other) {
+  const TemporaryFolder folder;
+  const Asset asset = load(write_document(folder / "in.glb", tetrahedron_document()));
+  const SkeletonFile skeleton = load_skeleton_file(write_document(folder / "other.glb", other));
+  const Eigen::Affine3d fit(Eigen::Translation3d(0, 0, 1));
+  auto changes = save_glb(folder / "out.glb", asset, skeleton, fit, spread_weights(4, skeleton.skeleton.size()));
+  return {load(folder / "out.glb"), read_document(folder / "out.glb"), std::move(changes)};
+}
+
+TEST(SaveGlb, each_node_of_a_given_skeleton_has_one_place_whatever_its_file_says) {
+  gltf::Document other = skinned_tetrahedron_document();
+  other.json["nodes"][1]["children"] = {2, 2};
+  other.json["nodes"][2]["children"] = {1, 2};
+  const Saved saved = save_with_skeleton_of(other);
+  std::vector<std::size_t> children;
+  for (const Json& node : saved.document.json["nodes"])
+    for (const Json& child : node.value("children", Json::array())) children.push_back(child.get<std::size_t>());
+  EXPECT_EQ(children, (std::vector<std::size_t>{2, 1}));
+  EXPECT_THAT(saved.asset.repairs, testing::IsEmpty());
+}
+
 TEST(SaveGlb, names_that_readers_trip_over_are_changed_and_said_so) {
   const TemporaryFolder folder;
   const Asset asset = load(write_document(folder / "in.glb", tetrahedron_document()));

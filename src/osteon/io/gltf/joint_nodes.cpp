@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "osteon/io/gltf/joint_nodes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "osteon/base/error.h"
@@ -73,12 +74,17 @@ std::vector<bool> around_joints(const Scene& scene, const SkeletonSource& skelet
   return wanted;
 }
 
-Json stripped_node(Json node, const std::vector<bool>& wanted, const std::vector<std::size_t>& copy_of) {
+// With the children that the importer took for its own: no node is in two places.
+Json stripped_node(const SkeletonSource& skeleton, const Scene& scene, std::size_t n, const std::vector<bool>& wanted,
+                   const std::vector<std::size_t>& copy_of) {
+  Json node = skeleton.document.json["nodes"][n];
   for (const char* key : {"mesh", "skin", "camera", "weights", "extensions"}) node.erase(key);
   if (!node.contains("children")) return node;
   Json children = Json::array();
-  for (const Json& child : node["children"])
-    if (const auto c = child.get<std::size_t>(); wanted.at(c)) children.push_back(copy_of[c]);
+  for (const Json& child : node["children"]) {
+    const auto c = child.get<std::size_t>();
+    if (wanted.at(c) && scene.nodes[c].parent == n && std::ranges::count(children, Json(copy_of[c])) == 0) children.push_back(copy_of[c]);
+  }
   if (children.empty())
     node.erase("children");
   else
@@ -150,7 +156,7 @@ JointNodes copy_joint_nodes(Writer& writer, Document& document, const SkeletonSo
   std::vector<std::size_t> roots;
   for (std::size_t n = 0; n < wanted.size(); ++n) {
     if (!wanted[n]) continue;
-    nodes.push_back(stripped_node(skeleton.document.json["nodes"][n], wanted, copy_of));
+    nodes.push_back(stripped_node(skeleton, scene, n, wanted, copy_of));
     if (!scene.nodes[n].parent) roots.push_back(copy_of[n]);
   }
   const Eigen::Affine3d placed = fit * skeleton.to_world;

@@ -310,6 +310,15 @@ Saved save_with_skeleton_of(const gltf::Document& other) {
   return {load(folder / "out.glb"), read_document(folder / "out.glb"), std::move(changes)};
 }
 
+TEST(SaveGlb, a_given_skeleton_with_a_joint_scaled_to_nothing_is_written_anew) {
+  gltf::Document other = skinned_tetrahedron_document();
+  other.json["nodes"][2]["scale"] = {0, 0, 0};
+  const Saved saved = save_with_skeleton_of(other);
+  EXPECT_TRUE(has_repair(saved.changes, "a joint is scaled to nothing"));
+  EXPECT_EQ(saved.asset.skeleton->rest_positions[JointId{1}], Vec3f(1.5f, 0, 1));
+  for (const float x : floats_of(saved.document, saved.document.json["skins"][0]["inverseBindMatrices"])) EXPECT_TRUE(std::isfinite(x));
+}
+
 TEST(SaveGlb, each_node_of_a_given_skeleton_has_one_place_whatever_its_file_says) {
   gltf::Document other = skinned_tetrahedron_document();
   other.json["nodes"][1]["children"] = {2, 2};

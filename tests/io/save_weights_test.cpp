@@ -130,5 +130,17 @@ TEST(SaveWeights, a_joint_scaled_to_nothing_has_the_skeleton_written_anew) {
   EXPECT_TRUE(has_repair(rebound.changes, "a joint is scaled to nothing"));
 }
 
+TEST(SaveWeights, a_mesh_without_weights_is_bound_to_no_joint_scaled_to_nothing) {
+  for (const bool has_skin : {true, false}) {
+    gltf::Document document = skinned_tetrahedron_document();
+    for (const char* key : {"JOINTS_0", "WEIGHTS_0"}) document.json["meshes"][0]["primitives"][0]["attributes"].erase(key);
+    if (!has_skin) document.json["nodes"][0].erase("skin");
+    document.json["nodes"][1]["scale"] = {0, 0, 0};
+    const Rebound rebound = bound_to_first_joint(document);
+    expect_same_places(rebound.before, rebound.after);
+    EXPECT_TRUE(has_repair(rebound.changes, "a joint is scaled to nothing"));
+  }
+}
+
 }  // namespace
 }  // namespace osteon::io

@@ -7,9 +7,12 @@
 #include "osteon/base/error.h"
 #include "osteon/io/gltf/attach_rig.h"
 #include "osteon/io/gltf/fresh.h"
+#include "osteon/io/gltf/joint_nodes.h"
 
 namespace osteon::io {
 namespace {
+
+constexpr const char* kWrittenAnew = "a joint is scaled to nothing, which no mesh can be bound to; the skeleton is written anew";
 
 void check(const Asset& asset, const Skeleton& skeleton, const SkinWeights& weights, const SaveOptions& options) {
   validate(asset.mesh);
@@ -71,9 +74,11 @@ std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset
 
 std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const SkeletonFile& skeleton,
                                   const Eigen::Affine3d& fit, const SkinWeights& weights, SaveOptions options) {
-  if (!skeleton.source) {
+  if (!skeleton.source || !gltf::can_copy_joint_nodes(*skeleton.source)) {
     options.names = JointNames::as_given;
-    return save_glb(path, asset, transformed(skeleton.skeleton, fit), weights, options);
+    std::vector<std::string> changes = save_glb(path, asset, transformed(skeleton.skeleton, fit), weights, options);
+    if (skeleton.source) changes.insert(changes.begin(), kWrittenAnew);
+    return changes;
   }
   check(asset, skeleton.skeleton, weights, options);
   return save_document(path, asset, skeleton.skeleton.size(), [&](GltfSource& document, const auto& instances, auto& changes) {
@@ -87,12 +92,11 @@ std::vector<std::string> save_weights(const std::filesystem::path& path, const A
   assert(asset.skeleton);
   check(asset, *asset.skeleton, weights, options);
   const bool from_gltf = asset.source && asset.source->gltf;
-  if (!from_gltf || !gltf::can_replace_weights(asset.source->instances)) {
+  if (!from_gltf || !gltf::can_replace_weights(*asset.source)) {
     SaveOptions as_given = options;
     as_given.names = JointNames::as_given;
     std::vector<std::string> changes = save_with_joints(path, asset, *asset.skeleton, weights, as_given);
-    if (from_gltf)
-      changes.insert(changes.begin(), "a joint is scaled to nothing, which no mesh can be bound to; the skeleton is written anew");
+    if (from_gltf) changes.insert(changes.begin(), kWrittenAnew);
     return changes;
   }
   return save_document(path, asset, asset.skeleton->size(), [&](GltfSource& document, const auto& instances, auto& changes) {

@@ -43,6 +43,7 @@ std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset
 
 // The same with the skeleton of another file, moved by `fit` (a similarity, y up and metres on both sides). A skeleton from glTF goes in
 // with its nodes as they were: names, order, transforms and extras bit by bit; what `fit` asks for is done by one node above them.
+// But where a joint is scaled to nothing, which no mesh can be bound to, the skeleton is written anew, and the changes say so.
 // Otherwise, and where `fit` is the identity, joint names are as given.
 std::vector<std::string> save_glb(const std::filesystem::path& path, const Asset& asset, const SkeletonFile& skeleton,
                                   const Eigen::Affine3d& fit, const SkinWeights& weights, SaveOptions options = {});

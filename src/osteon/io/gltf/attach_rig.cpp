@@ -14,6 +14,7 @@
 #include "osteon/io/gltf/single_buffer.h"
 #include "osteon/io/gltf/skin_attributes.h"
 #include "osteon/io/gltf/world.h"
+#include "osteon/io/joint_tree.h"
 
 namespace osteon::io::gltf {
 namespace {
@@ -279,10 +280,14 @@ class RigAttachment {
 
 }  // namespace
 
-bool can_replace_weights(const std::vector<PlacedInstance>& instances) {
-  return std::ranges::all_of(instances, [](const PlacedInstance& placed) {
-    return std::ranges::all_of(placed.joint_to_world, [](const Eigen::Affine3d& m) { return m.linear().fullPivLu().isInvertible(); });
-  });
+bool can_replace_weights(const SourceDocument& source) {
+  std::vector<std::string> told_at_load;
+  const Scene scene = import_scene(source.gltf->document, told_at_load).scene;
+  const auto tree = joint_tree(scene, told_at_load);
+  return can_bind(scene, nodes_of_joints(*tree, tree->skeleton.size())) &&
+         std::ranges::all_of(source.instances, [](const PlacedInstance& placed) {
+           return std::ranges::all_of(placed.joint_to_world, [](const Eigen::Affine3d& m) { return m.linear().fullPivLu().isInvertible(); });
+         });
 }
 
 void replace_weights(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const SkinWeights& weights,

@@ -18,9 +18,9 @@ void attach_rig(GltfSource& source, const std::vector<PlacedInstance>& instances
 
 // Gives the meshes of `source` other weights for the joints that it has; nothing else changes, but that a skin gets the joints that it
 // lacks, and that meshes which do not stand in their bind pose are rewritten, and bound, as they stand.
-// Pre: the document was read as `instances`, and can_replace_weights holds: no joint of theirs is scaled to nothing.
+// Pre: the document was read as `instances`, and can_replace_weights holds: no joint is scaled to nothing.
 void replace_weights(GltfSource& source, const std::vector<PlacedInstance>& instances, const TriangleMesh& mesh, const SkinWeights& weights,
                      const SaveOptions& options, std::vector<std::string>& changes);
-bool can_replace_weights(const std::vector<PlacedInstance>& instances);
+bool can_replace_weights(const SourceDocument& source);
 
 }  // namespace osteon::io::gltf

@@ -143,6 +143,15 @@ std::vector<JointId> places_in_skin(const SkeletonSource& skeleton) {
   return places;
 }
 
+bool can_bind(const Scene& scene, const std::vector<std::optional<std::size_t>>& node_of_joint) {
+  return std::ranges::all_of(node_of_joint, [&](const auto& n) { return !n || scene.nodes[*n].world.linear().fullPivLu().isInvertible(); });
+}
+
+bool can_copy_joint_nodes(const SkeletonSource& skeleton) {
+  std::vector<std::string> told_at_load;
+  return can_bind(import_scene(skeleton.document, told_at_load).scene, skeleton.node_of_joint);
+}
+
 JointNodes copy_joint_nodes(Writer& writer, Document& document, const SkeletonSource& skeleton, const Eigen::Affine3d& fit,
                             const Eigen::Affine3d& bind) {
   std::vector<std::string> told_at_load;

@@ -28,8 +28,13 @@ JointNodes add_joint_nodes(Writer& writer, Document& document, const Skeleton& s
 
 // The same with the nodes of the skeleton's own file, copied as they are with all that stands above and below the joints (but no meshes and
 // cameras), in the order of the file. A node above them applies `fit` where it is not the identity, or where there are several roots.
+// Pre: can_copy_joint_nodes, which is can_bind of its nodes.
 JointNodes copy_joint_nodes(Writer& writer, Document& document, const SkeletonSource& skeleton, const Eigen::Affine3d& fit,
                             const Eigen::Affine3d& bind);
+bool can_copy_joint_nodes(const SkeletonSource& skeleton);
+
+// Whether a mesh can be bound to all of these nodes: none is scaled to nothing.
+bool can_bind(const Scene& scene, const std::vector<std::optional<std::size_t>>& node_of_joint);
 
 // The node above others that applies `fit`, a similarity.
 Json fitted_node(const std::string& name, const Eigen::Affine3d& fit, const std::vector<std::size_t>& children);

@@ -137,6 +137,12 @@ TEST(Bvh, a_mesh_without_faces_is_never_hit) {
   EXPECT_FALSE(Bvh(mesh).blocked({Vec3f(0, 0, -1), Vec3f(0, 0, 1)}));
 }
 
+TEST(Bvh, faces_nearer_to_each_other_than_a_float_can_divide_by_have_a_nearest_one) {
+  TriangleMesh mesh = shapes::icosphere(3);
+  for (Vec3f& p : mesh.positions) p *= 1e-39f;
+  EXPECT_NEAR(Bvh(mesh).closest_point({1, 0, 0}).barycentric.sum(), 1, 1e-6f);
+}
+
 TEST(Bvh, many_faces_at_one_place_do_not_overflow) {
   TriangleMesh mesh = shapes::sheet(1, 1);
   for (int copy = 0; copy < 12; ++copy) {

@@ -279,8 +279,8 @@ struct Bvh::Builder {
     for (std::size_t i = begin; i < end; ++i) box.extend(centres[order[i]]);
     int axis = 0;
     const float extent = box.sizes().maxCoeff(&axis);
-    if (extent > 0 && depth < kSplitByAreaDepth) {
-      const float scale = kBins / extent;
+    const float scale = kBins / extent;
+    if (std::isfinite(scale) && depth < kSplitByAreaDepth) {
       const auto bin_of = [&](std::uint32_t f) {
         return std::min(kBins - 1, static_cast<int>((centres[f][axis] - box.min()[axis]) * scale));
       };
@@ -291,7 +291,7 @@ struct Bvh::Builder {
         return static_cast<std::size_t>(middle - order.begin());
       }
     }
-    return begin + (end - begin) / 2;  // all centres at one place
+    return begin + (end - begin) / 2;  // all centres at one place, or as good as that
   }
 
   // The bin where the right side starts at the least sum of (area × faces) of both sides; 0 when all faces fall into one bin.

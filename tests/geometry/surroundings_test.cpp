@@ -76,6 +76,15 @@ TEST(Surroundings, a_part_with_a_joint_far_away_is_no_stray) {
   EXPECT_EQ(surroundings(merged(hatted(), speck({400, 1, 0})), joints).vertices, speck({0, 0, 0}).positions.size());
 }
 
+TEST(Surroundings, the_only_body_that_there_is_is_none_however_small_and_far_from_the_joints) {
+  const std::vector<Vec3f> joints = {{0, 1, 0}};
+  for (const float size : {1.0f, 1e-10f, 1e-20f, 1e-30f}) {
+    TriangleMesh mesh = hatted();
+    for (Vec3f& p : mesh.positions) p *= size;
+    EXPECT_EQ(surroundings(mesh, joints).vertices, 0u) << size;
+  }
+}
+
 TEST(Surroundings, strays_do_not_hide_the_ground) { EXPECT_TRUE(is_told_apart(hatted(), merged(plate(5, 0.1f, 0), speck({0, -40, 0})))); }
 
 TEST(Surroundings, what_is_left_is_the_character_in_its_order) {

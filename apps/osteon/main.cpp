@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <memory>
 
@@ -69,13 +70,20 @@ int run(int argc, char** argv) {
   }
 }
 
+// What a command was asked to print may not have arrived: a disk may be full.
+void finish_printing() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw osteon::Error("cannot write to the standard output");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   osteon::app::keep_freed_memory();
   send_messages_to_stderr();
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    finish_printing();
+    return code;
   } catch (const osteon::app::Refused& e) {
     spdlog::error(e.what());
     return refused;

@@ -20,6 +20,13 @@ TEST(Program, says_its_version) {
   EXPECT_THAT(run.out, StartsWith("osteon "));
 }
 
+TEST(Program, what_could_not_be_printed_is_an_error) {
+  const test::TemporaryFolder folder;
+  const auto run = test::run_in(folder, "(" OSTEON_PROGRAM " --version >/dev/full)");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.err, "error: cannot write to the standard output\n");
+}
+
 TEST(Program, wrong_options_end_with_2_and_one_line) {
   const test::TemporaryFolder folder;
   for (const char* arguments : {"", "dance", "rig", "render a.obj", "render a.obj -o a.png --size 0 0", "rig a.obj -o a.glb --detail 7",

@@ -60,8 +60,10 @@ bool is_within(const fs::path& file, const fs::path& folder) {
 std::vector<fs::path> characters_in(const BatchArguments& arguments) {
   if (!fs::is_directory(arguments.input)) throw Error("{}: expected a folder of characters", arguments.input.string());
   std::vector<fs::path> files;
+  std::error_code no_file;  // a link that leads nowhere stops no other
   for (const auto& entry : fs::recursive_directory_iterator(arguments.input, fs::directory_options::skip_permission_denied))
-    if (entry.is_regular_file() && is_character(entry.path()) && !is_within(entry.path(), arguments.output)) files.push_back(entry.path());
+    if (entry.is_regular_file(no_file) && is_character(entry.path()) && !is_within(entry.path(), arguments.output))
+      files.push_back(entry.path());
   if (files.empty()) throw Error("{}: found no characters, expected files {}", arguments.input.string(), fmt::join(kExtensions, ", "));
   std::ranges::sort(files);
   return files;

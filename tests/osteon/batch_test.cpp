@@ -58,6 +58,14 @@ TEST_F(BatchCommand, one_bad_file_stops_no_other) {
   for (const char* rig : kRigs) EXPECT_TRUE(fs::exists(folder_ / "out" / rig)) << rig;
 }
 
+TEST_F(BatchCommand, links_that_lead_nowhere_stop_no_other) {
+  fs::create_symlink("gone.obj", folder_ / "in/dangling.obj");
+  fs::create_symlink("circle.obj", folder_ / "in/circle.obj");
+  const auto run = osteon(folder_, "batch in -o out");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("4 of 4 files: 4 rigged"));
+}
+
 TEST_F(BatchCommand, does_again_only_what_changed) {
   ASSERT_EQ(osteon(folder_, "batch in -o out").code, 0);
   const auto written = fs::last_write_time(folder_ / "out/hero.glb");

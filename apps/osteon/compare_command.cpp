@@ -8,6 +8,7 @@
 
 #include "../outputs.h"
 #include "commands.h"
+#include "naming.h"
 #include "osteon/geometry/working_mesh.h"
 #include "osteon/metrics/skin_metrics.h"
 #include "osteon/pipelines/skin_quality.h"
@@ -27,8 +28,9 @@ struct CompareArguments {
 };
 
 // Longest side 1, as the measures have it.
-Rig normalised(Rig rig) {
-  const geometry::Normalization frame = geometry::normalization_of(rig.mesh);
+Rig load_normalised(const std::filesystem::path& path, const std::vector<Output>& outputs) {
+  Rig rig = load_rig(path, outputs);
+  const geometry::Normalization frame = naming(path, [&] { return geometry::normalization_of(rig.mesh); });
   for (Vec3f& p : rig.mesh.positions) p = frame.apply(p);
   for (Vec3f& p : rig.skeleton.rest_positions) p = frame.apply(p);
   return rig;
@@ -101,7 +103,7 @@ std::vector<Output> outputs_of(const CompareArguments& arguments) {
 void compare(const CompareArguments& arguments) {
   const std::vector<Output> outputs = outputs_of(arguments);
   check_outputs({arguments.a, arguments.b}, outputs);
-  const Rig a = normalised(load_rig(arguments.a, outputs)), b = normalised(load_rig(arguments.b, outputs));
+  const Rig a = load_normalised(arguments.a, outputs), b = load_normalised(arguments.b, outputs);
   const pipelines::SkinQuality of_a = pipelines::skin_quality(a), of_b = pipelines::skin_quality(b);
   std::optional<metrics::SkinScores> between;
   if (a.mesh.positions.size() == b.mesh.positions.size()) between = metrics::compare_weights(a, renumbered(b, a.skeleton));

@@ -20,6 +20,7 @@
 #include "evaluation_plots.h"
 #include "gallery.h"
 #include "model_options.h"
+#include "naming.h"
 #include "osteon/metrics/score_table.h"
 #include "rigged_file.h"
 #include "skin_methods.h"
@@ -90,7 +91,8 @@ using Tables = std::vector<metrics::ScoreTable>;
 
 Tables compare_files(const EvaluateArguments& arguments) {
   const Rig predicted = load_rig(arguments.predicted);
-  const Reference reference(load_rig(arguments.reference));
+  const Rig expected = load_rig(arguments.reference);
+  const Reference reference = naming(arguments.reference, [&] { return Reference(expected); });
   const std::string id = arguments.predicted.stem().string();
   Tables tables{{"skeleton", kSkeletonColumns, {{id, "file", values(reference.skeleton_scores(predicted.skeleton))}}, {}},
                 {"skin", kSkinColumns, {}, {}}};

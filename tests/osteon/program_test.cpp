@@ -83,6 +83,24 @@ TEST(Program, bad_files_end_with_2_and_are_named) {
   }
 }
 
+TEST(Program, a_character_without_extent_is_named_where_it_is_measured) {
+  const test::TemporaryFolder folder;
+  io::Asset asset;
+  asset.mesh = shapes::icosphere(0);
+  for (Vec3f& p : asset.mesh.positions) p = Vec3f(1, 2, 3);
+  Skeleton skeleton;
+  skeleton.add("root", std::nullopt, Vec3f(1, 2, 3));
+  SkinWeights weights;
+  const Influence whole{JointId{0}, 1.0f};
+  for (std::size_t v = 0; v < asset.mesh.positions.size(); ++v) weights.append({&whole, 1});
+  io::save_glb(folder / "point.glb", asset, skeleton, weights);
+  for (const char* command : {"compare", "evaluate"}) {
+    const auto run = osteon(folder, fmt::format("{} point.glb point.glb", command));
+    EXPECT_EQ(run.code, 2) << command;
+    EXPECT_THAT(run.err, StartsWith("error: point.glb: the mesh is 0 in size")) << command;
+  }
+}
+
 TEST(Program, draws_a_mesh_without_a_rig) {
   const test::TemporaryFolder folder;
   io::save_obj(folder / "ball.obj", shapes::icosphere(2));

@@ -34,12 +34,8 @@ struct Edge {
 
 bool has(const Face& face, std::uint32_t v) { return face[0] == v || face[1] == v || face[2] == v; }
 
-// What a round far from the target does otherwise than one near it:
-// - Edges are gone through by place and not by cost. Neighbours in memory are neighbours in space, which saves most cache misses.
-// - Faces may be squeezed flat, though not turned around. An even pattern of thin faces, one face cut finely, becomes less even by any
-// merge
-//   and would stay as dense as it is; later merges make the faces round.
-enum class Distance { far, near };
+// How the chosen edges of a round are gone through. Neighbours in memory are neighbours in space: going by place saves most cache misses.
+enum class Order { by_cost, by_place };
 
 // The mesh while it shrinks. Between rounds all arrays hold what is alive and nothing else.
 class Decimation {
@@ -61,11 +57,11 @@ class Decimation {
   std::size_t vertices() const { return positions_.size(); }
 
   // Tries the cheapest `candidates` edges and merges at most `most` of them. Returns how many were merged.
-  std::size_t round(std::size_t candidates, Distance distance, std::size_t most) {
-    const std::vector<std::uint32_t> edges = cheapest_edges(candidates, distance);
+  std::size_t round(std::size_t candidates, Order order, std::size_t most) {
+    const std::vector<std::uint32_t> edges = cheapest_edges(candidates, order);
     std::size_t merged = 0;
     touched_.assign(vertices(), false);
-    for (std::size_t i = 0; i < edges.size() && merged < most; ++i) merged += try_merge(edges_[edges[i]], distance);
+    for (std::size_t i = 0; i < edges.size() && merged < most; ++i) merged += try_merge(edges_[edges[i]]);
     if (merged > 0) {
       compact();
       find_rings();
@@ -76,6 +72,9 @@ class Decimation {
 
   std::size_t edges() const { return edges_.size(); }
 
+  // Whether faces may be squeezed flat for now, though not turned around. An even pattern of thin faces, one face cut finely, becomes less
+  // even by any merge and would stay as dense as it is; later merges make the faces round.
+  void let_squeeze(bool may) { may_squeeze_ = may; }
   void allow_folds() { may_fold_ = true; }
   bool may_fold() const { return may_fold_; }
 
@@ -171,7 +170,7 @@ class Decimation {
   }
 
   // Indices into edges_; edges of equal cost count as sorted by index.
-  std::vector<std::uint32_t> cheapest_edges(std::size_t count, Distance distance) const {
+  std::vector<std::uint32_t> cheapest_edges(std::size_t count, Order order) const {
     std::vector<std::uint64_t> keys(edges_.size());
     parallel_for(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -184,20 +183,20 @@ class Decimation {
       std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(count), keys.end());
       keys.resize(count);
     }
-    if (distance == Distance::near) std::sort(keys.begin(), keys.end());
+    if (order == Order::by_cost) std::sort(keys.begin(), keys.end());
     std::vector<std::uint32_t> edges(keys.size());
     for (std::size_t i = 0; i < keys.size(); ++i) edges[i] = static_cast<std::uint32_t>(keys[i]);
-    if (distance == Distance::far) std::sort(edges.begin(), edges.end());
+    if (order == Order::by_place) std::sort(edges.begin(), edges.end());
     return edges;
   }
 
-  bool try_merge(const Edge& e, Distance distance) {
+  bool try_merge(const Edge& e) {
     if (touched_[e.a] || touched_[e.b]) return false;
     if (std::max(rings_.of(e.a).size(), rings_.of(e.b).size()) > kMostFaces) return false;
     if (tears(e)) return false;
     const Quadric q = quadrics_[e.a] + quadrics_[e.b];
     const Vec3d position = merged_position(e, q);
-    if (!may_fold_ && (folds(e.a, e.b, position, distance) || folds(e.b, e.a, position, distance))) return false;
+    if (!may_fold_ && (folds(e.a, e.b, position) || folds(e.b, e.a, position))) return false;
     merge(e, q, position);
     return true;
   }
@@ -221,8 +220,8 @@ class Decimation {
     return false;
   }
 
-  // Whether moving v to `position` turns a face around or, near the target, squeezes it flat; faces with `other` vanish anyway.
-  bool folds(std::uint32_t v, std::uint32_t other, const Vec3d& position, Distance distance) const {
+  // Whether moving v to `position` turns a face around or squeezes it flat without leave; faces with `other` vanish anyway.
+  bool folds(std::uint32_t v, std::uint32_t other, const Vec3d& position) const {
     for (std::uint32_t f : rings_.of(v)) {
       if (!alive(f) || has(faces_[f], other)) continue;
       const Face& face = faces_[f];
@@ -231,7 +230,7 @@ class Decimation {
       const Vec3d before = (b - positions_[v]).cross(c - positions_[v]), after = (b - position).cross(c - position);
       const double length_before = before.norm(), length_after = after.norm();
       if (before.dot(after) < kLeastTurn * length_before * length_after) return true;
-      if (distance == Distance::far) continue;
+      if (may_squeeze_) continue;
       const double side_before = std::max({(b - positions_[v]).squaredNorm(), (c - positions_[v]).squaredNorm(), (c - b).squaredNorm()});
       const double side_after = std::max({(b - position).squaredNorm(), (c - position).squaredNorm(), (c - b).squaredNorm()});
       if (length_after < kLeastQuality * side_after && length_after * side_before <= length_before * side_after) return true;
@@ -284,7 +283,7 @@ class Decimation {
   Buckets<std::uint32_t> rings_;            // faces of each vertex
   std::vector<Edge> edges_;
   std::vector<std::uint8_t> touched_;  // merged in this round
-  bool may_fold_ = false;
+  bool may_squeeze_ = false, may_fold_ = false;
 };
 
 }  // namespace
@@ -299,7 +298,8 @@ DecimatedMesh decimate(const TriangleMesh& mesh, const DecimateOptions& options)
     share = std::max(share, usual);
     const double wished = share * static_cast<double>(work.vertices());
     const auto candidates = static_cast<std::size_t>(std::min(wished, static_cast<double>(work.edges()))) + 1;
-    const std::size_t merged = work.round(candidates, far ? Distance::far : Distance::near, work.vertices() - target);
+    work.let_squeeze(far && share > usual);
+    const std::size_t merged = work.round(candidates, far ? Order::by_place : Order::by_cost, work.vertices() - target);
     if (merged == 0 && candidates >= work.edges()) {  // every edge that is left holds the shape
       if (work.may_fold()) break;
       work.allow_folds();

@@ -14,7 +14,7 @@ namespace osteon::geometry {
 // modelling program mirrors, or a part cut off.
 bool is_open_at_a_side(const TriangleMesh& mesh, Eigen::Index up);
 
-// A plane divides the mesh, touching no part, into two with a quarter of the area or more each: two characters, or one and its coarser
+// A plane divides the mesh, touching no part, into two with two fifths of the area or more each: two characters, or one and its coarser
 // copy.
 bool stands_side_by_side(const TriangleMesh& mesh, Eigen::Index up);
 

@@ -24,7 +24,7 @@ constexpr double kLeastQuality = 0.05;  // twice the area by the squared longest
 constexpr std::size_t kMostFaces = 1024;
 
 // Rounds take the cheapest edges, so many per vertex (a mesh has three). Far from the target speed counts, near it the order of costs.
-constexpr std::size_t kFar = 8;
+constexpr std::size_t kFar = 8, kVeryFar = 100;
 constexpr double kShareFar = 0.5, kShareNear = 0.1;
 
 struct Edge {
@@ -72,7 +72,8 @@ class Decimation {
 
   std::size_t edges() const { return edges_.size(); }
 
-  // Whether faces may be squeezed flat for now, though not turned around. An even pattern of thin faces, one face cut finely, becomes less
+  // Whether faces may be squeezed flat for now, though not turned around: very far from the target, or where the cheapest edges cannot be
+  // merged otherwise. An even pattern of thin faces, one face cut finely, becomes less
   // even by any merge and would stay as dense as it is; later merges make the faces round.
   void let_squeeze(bool may) { may_squeeze_ = may; }
   void allow_folds() { may_fold_ = true; }
@@ -298,7 +299,7 @@ DecimatedMesh decimate(const TriangleMesh& mesh, const DecimateOptions& options)
     share = std::max(share, usual);
     const double wished = share * static_cast<double>(work.vertices());
     const auto candidates = static_cast<std::size_t>(std::min(wished, static_cast<double>(work.edges()))) + 1;
-    work.let_squeeze(far && share > usual);
+    work.let_squeeze(work.vertices() > kVeryFar * target || (far && share > usual));
     const std::size_t merged = work.round(candidates, far ? Order::by_place : Order::by_cost, work.vertices() - target);
     if (merged == 0 && candidates >= work.edges()) {  // every edge that is left holds the shape
       if (work.may_fold()) break;

@@ -143,10 +143,10 @@ TEST(Decimate, the_hub_of_a_fan_stays_where_it_is_and_the_fan_reaches_the_target
 TEST(Decimate, folds_faces_only_where_more_vertices_would_be_left_than_may_be) {
   const TriangleMesh needle = shapes::transformed(shapes::icosphere(5), Transform(Eigen::Scaling(1e6f, 1.0f, 1.0f)));
   const std::size_t unfolded = decimate(needle, {.target_vertices = 100}).mesh.positions.size();
-  ASSERT_GT(unfolded, 600u);
+  ASSERT_GT(unfolded, 450u);
   EXPECT_EQ(decimate(needle, {.target_vertices = 100, .most_vertices = unfolded}).mesh.positions.size(), unfolded);
-  const auto [mesh, from] = decimate(needle, {.target_vertices = 100, .most_vertices = 500});
-  EXPECT_EQ(mesh.positions.size(), 500u);
+  const auto [mesh, from] = decimate(needle, {.target_vertices = 100, .most_vertices = 400});
+  EXPECT_EQ(mesh.positions.size(), 400u);
   EXPECT_EQ(connected_components(mesh).count, 1u);
 }
 

@@ -73,8 +73,8 @@ class Decimation {
   std::size_t edges() const { return edges_.size(); }
 
   // Whether faces may be squeezed flat for now, though not turned around: very far from the target, or where the cheapest edges cannot be
-  // merged otherwise. An even pattern of thin faces, one face cut finely, becomes less
-  // even by any merge and would stay as dense as it is; later merges make the faces round.
+  // merged otherwise. An even pattern of thin faces, one face cut finely, becomes less even by any merge and would stay as dense as it is;
+  // later merges make the faces round.
   void let_squeeze(bool may) { may_squeeze_ = may; }
   void allow_folds() { may_fold_ = true; }
   bool may_fold() const { return may_fold_; }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <vector>
 
 #include "osteon/geometry/cleanup.h"
@@ -41,7 +40,7 @@ class Parts {
     double strays = 0;
     for (const Part& p : parts_)
       if (is_stray(p)) strays += p.area;
-    if (strays >= kStrays * all) return;  // also where the areas are too small for a float
+    if (strays >= kStrays * all) return;  // so all stays where the areas are too small for a float
     for (Part& p : parts_) p.is_character = !is_stray(p);
   }
 
